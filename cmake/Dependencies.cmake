@@ -1,0 +1,19 @@
+# Every library that the project uses, found once. `./dev build` installs what is missing.
+find_package(Threads REQUIRED)
+find_package(PkgConfig REQUIRED)
+find_package(Vulkan REQUIRED)
+find_package(OpenSSL REQUIRED)
+find_package(Boost 1.74 REQUIRED)  # headers only: Asio and Beast
+find_package(glm REQUIRED)
+find_package(nlohmann_json REQUIRED)
+find_package(CLI11 REQUIRED)
+find_package(spdlog REQUIRED)
+# Its package file does not ask for OpenSSL and Threads itself; both stand above.
+find_package(LibDataChannel REQUIRED)
+# OpenImageIO's own package file wants tools that Debian leaves out of it.
+pkg_check_modules(OIIO REQUIRED IMPORTED_TARGET OpenImageIO)
+find_path(TINYGLTF_INCLUDE_DIR tiny_gltf.h REQUIRED)
+find_program(GLSLANG glslangValidator REQUIRED)
+if(LICHTVELD_TESTS)
+  find_package(GTest REQUIRED)
+endif()
