@@ -1,0 +1,308 @@
+#include "lichtveld/gpu/frame.hpp"
+
+#include <cassert>
+
+namespace lichtveld::gpu {
+
+namespace {
+
+using Stage = vk::PipelineStageFlagBits2;
+using AccessBit = vk::AccessFlagBits2;
+
+constexpr std::uint32_t queries_a_pool = 1024;
+
+// Writes the bindings into command buffer state, in the order of the pipeline's kinds.
+void push_descriptors(const vk::raii::CommandBuffer& commands, const Pipeline& pipeline,
+                      const std::vector<Binding>& bindings) {
+  assert(bindings.size() == pipeline.kinds().size());
+  std::vector<vk::DescriptorImageInfo> images(bindings.size());
+  std::vector<vk::DescriptorBufferInfo> buffers(bindings.size());
+  std::vector<vk::WriteDescriptorSet> writes;
+  constexpr vk::DescriptorType types[] = {vk::DescriptorType::eCombinedImageSampler, vk::DescriptorType::eStorageImage,
+                                          vk::DescriptorType::eStorageBuffer};
+  for (std::uint32_t index = 0; index < bindings.size(); ++index) {
+    const Binding& binding = bindings[index];
+    assert(binding.kind == pipeline.kinds()[index]);
+    if (binding.image != nullptr)
+      images[index] = vk::DescriptorImageInfo{.sampler = binding.sampler,
+                       .imageView = binding.image->view(),
+                       .imageLayout = binding.kind == Kind::sampled_image ? vk::ImageLayout::eShaderReadOnlyOptimal
+                                                                          : vk::ImageLayout::eGeneral};
+    else
+      buffers[index] = vk::DescriptorBufferInfo{.buffer = binding.buffer->handle(), .range = VK_WHOLE_SIZE};
+    writes.push_back({.dstBinding = index,
+                      .descriptorCount = 1,
+                      .descriptorType = types[static_cast<int>(binding.kind)],
+                      .pImageInfo = &images[index],
+                      .pBufferInfo = &buffers[index]});
+  }
+  if (!writes.empty()) commands.pushDescriptorSetKHR(pipeline.bind_point(), pipeline.layout(), 0, writes);
+}
+
+vk::RenderingAttachmentInfo attachment_info(const Attachment& attachment, vk::ImageLayout layout) {
+  return {.imageView = attachment.image->layer_view(attachment.layer),
+          .imageLayout = layout,
+          .loadOp = attachment.clear ? vk::AttachmentLoadOp::eClear : vk::AttachmentLoadOp::eLoad,
+          .storeOp = vk::AttachmentStoreOp::eStore,
+          .clearValue = attachment.clear.value_or(vk::ClearValue{})};
+}
+
+// The stages and accesses that have to be waited for before `next`, or nothing where no barrier is needed.
+struct Wait {
+  vk::PipelineStageFlags2 stages;
+  vk::AccessFlags2 access;
+  bool needed = false;
+};
+
+Wait advance(UseState& state, vk::PipelineStageFlags2 stages, vk::AccessFlags2 access, vk::ImageLayout layout,
+             bool writes) {
+  const bool transition = layout != state.layout;
+  Wait wait;
+  if (writes || transition) {
+    wait.stages = state.write_stages | state.read_stages;
+    wait.access = state.write_access;
+    wait.needed = transition || static_cast<bool>(wait.stages);
+    // A layout transition is itself a write that later readers in other stages have to wait for.
+    state = {.write_stages = stages, .write_access = writes ? access : vk::AccessFlags2{}, .layout = layout};
+    if (!writes) {
+      state.read_stages = stages;
+      state.read_access = access;
+    }
+  } else if ((state.read_stages & stages) != stages || (state.read_access & access) != access) {
+    wait.stages = state.write_stages;
+    wait.access = state.write_access;
+    wait.needed = static_cast<bool>(wait.stages);
+    state.read_stages |= stages;
+    state.read_access |= access;
+  }
+  return wait;
+}
+
+}  // namespace
+
+Binding sampled(const Image& image, const vk::raii::Sampler& sampler) {
+  return {.kind = Kind::sampled_image, .image = &image, .sampler = *sampler};
+}
+Binding reads(const Image& image) { return {.kind = Kind::storage_image, .image = &image}; }
+Binding writes(const Image& image) { return {.kind = Kind::storage_image, .image = &image, .writes = true}; }
+Binding reads(const Buffer& buffer) { return {.kind = Kind::storage_buffer, .buffer = &buffer}; }
+Binding writes(const Buffer& buffer) { return {.kind = Kind::storage_buffer, .buffer = &buffer, .writes = true}; }
+
+void Draw::bind(const GraphicsPipeline& pipeline, const std::vector<Binding>& bindings) {
+  commands_.bindPipeline(vk::PipelineBindPoint::eGraphics, pipeline.handle());
+  push_descriptors(commands_, pipeline, bindings);
+  bound_ = &pipeline;
+}
+
+void Draw::push_bytes(std::span<const std::byte> bytes) {
+  commands_.pushConstants<std::byte>(bound_->layout(), vk::ShaderStageFlagBits::eAllGraphics, 0, bytes);
+}
+
+void Draw::stencil_reference(std::uint32_t value) {
+  commands_.setStencilReference(vk::StencilFaceFlagBits::eFrontAndBack, value);
+}
+
+void Draw::geometry(const Buffer& vertices, const Buffer& indices) {
+  commands_.bindVertexBuffers(0, vertices.handle(), vk::DeviceSize{0});
+  commands_.bindIndexBuffer(indices.handle(), 0, vk::IndexType::eUint32);
+}
+
+void Draw::indexed(std::uint32_t first, std::uint32_t count) {
+  if (count > 0) commands_.drawIndexed(count, 1, first, 0, 0);
+}
+
+void Draw::full_screen_triangle() { commands_.draw(3, 1, 0, 0); }
+
+Frame::Frame(const Device& device, PassTimes& times) : device_(device), times_(times) {
+  commands_ = std::move(vk::raii::CommandBuffers(device.handle(), {.commandPool = *device.commands(),
+                                                                   .level = vk::CommandBufferLevel::ePrimary,
+                                                                   .commandBufferCount = 1})
+                            .front());
+  commands_.begin({.flags = vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
+}
+
+void Frame::pass(const std::string& name, const std::function<void()>& record) {
+  const auto query = static_cast<std::uint32_t>(2 * timed_.size());
+  if (query % queries_a_pool == 0) {
+    queries_.emplace_back(device_.handle(), vk::QueryPoolCreateInfo{.queryType = vk::QueryType::eTimestamp,
+                                                                    .queryCount = queries_a_pool});
+    device_.name(queries_.back(), "frame/timestamps");
+    commands_.resetQueryPool(*queries_.back(), 0, queries_a_pool);
+  }
+  timed_.push_back({name, query});
+  const bool labels = device_.handle().getDispatcher()->vkCmdBeginDebugUtilsLabelEXT != nullptr;
+  if (labels) commands_.beginDebugUtilsLabelEXT({.pLabelName = name.c_str()});
+  // Barriers stand inside the timestamps: waiting for its inputs is a part of a pass.
+  commands_.writeTimestamp2(Stage::eAllCommands, *queries_.back(), query % queries_a_pool);
+  flush_barriers();
+  record();
+  commands_.writeTimestamp2(Stage::eAllCommands, *queries_.back(), query % queries_a_pool + 1);
+  if (labels) commands_.endDebugUtilsLabelEXT();
+}
+
+void Frame::compute_bytes(const ComputePipeline& pipeline, const std::vector<Binding>& bindings,
+                          std::span<const std::byte> constants, std::uint32_t groups_x, std::uint32_t groups_y) {
+  for (const Binding& binding : bindings) use(binding, Stage::eComputeShader);
+  pass(pipeline.name(), [&] {
+    commands_.bindPipeline(vk::PipelineBindPoint::eCompute, pipeline.handle());
+    push_descriptors(commands_, pipeline, bindings);
+    if (!constants.empty())
+      commands_.pushConstants<std::byte>(pipeline.layout(), vk::ShaderStageFlagBits::eCompute, 0, constants);
+    commands_.dispatch(groups_x, groups_y, 1);
+  });
+}
+
+void Frame::render(const std::string& name, const Target& target, const std::vector<Binding>& bindings,
+                   const std::vector<const Buffer*>& inputs, const std::function<void(Draw&)>& draw) {
+  for (const Binding& binding : bindings) use(binding, Stage::eVertexShader | Stage::eFragmentShader);
+  for (const Buffer* input : inputs)
+    use(*input, {Stage::eVertexInput, AccessBit::eVertexAttributeRead | AccessBit::eIndexRead});
+  std::vector<vk::RenderingAttachmentInfo> colours;
+  for (const Attachment& colour : target.colours) {
+    use(*colour.image, {Stage::eColorAttachmentOutput, AccessBit::eColorAttachmentRead | AccessBit::eColorAttachmentWrite,
+                        vk::ImageLayout::eColorAttachmentOptimal, true});
+    colours.push_back(attachment_info(colour, vk::ImageLayout::eColorAttachmentOptimal));
+  }
+  vk::RenderingAttachmentInfo stencil;
+  if (target.stencil) {
+    use(*target.stencil->image,
+        {Stage::eEarlyFragmentTests | Stage::eLateFragmentTests,
+         AccessBit::eDepthStencilAttachmentRead | AccessBit::eDepthStencilAttachmentWrite,
+         vk::ImageLayout::eDepthStencilAttachmentOptimal, true});
+    stencil = attachment_info(*target.stencil, vk::ImageLayout::eDepthStencilAttachmentOptimal);
+  }
+  pass(name, [&] {
+    commands_.beginRendering({.renderArea = {{0, 0}, target.extent},
+                              .layerCount = 1,
+                              .colorAttachmentCount = static_cast<std::uint32_t>(colours.size()),
+                              .pColorAttachments = colours.data(),
+                              .pStencilAttachment = target.stencil ? &stencil : nullptr});
+    commands_.setViewport(0, vk::Viewport{.width = static_cast<float>(target.extent.width),
+                                          .height = static_cast<float>(target.extent.height),
+                                          .maxDepth = 1});
+    commands_.setScissor(0, vk::Rect2D{{0, 0}, target.extent});
+    Draw recorder(commands_);
+    draw(recorder);
+    commands_.endRendering();
+  });
+}
+
+void Frame::clear(const std::string& name, const Image& image, vk::ClearColorValue value) {
+  use(image, {Stage::eClear, AccessBit::eTransferWrite, vk::ImageLayout::eTransferDstOptimal, true});
+  pass(name, [&] {
+    commands_.clearColorImage(image.handle(), vk::ImageLayout::eTransferDstOptimal, value,
+                              vk::ImageSubresourceRange{image.aspect(), 0, 1, 0, image.shape().layers});
+  });
+}
+
+void Frame::clear(const std::string& name, const Buffer& buffer, std::uint32_t word) {
+  // The specification counts a fill as a clear, the validation layers (1.3.239) as a copy: wait for either.
+  use(buffer, {Stage::eAllTransfer, AccessBit::eTransferWrite, vk::ImageLayout::eUndefined, true});
+  pass(name, [&] { commands_.fillBuffer(buffer.handle(), 0, VK_WHOLE_SIZE, word); });
+}
+
+void Frame::copy(const std::string& name, const Buffer& from, const Buffer& to) {
+  use(from, {Stage::eCopy, AccessBit::eTransferRead});
+  use(to, {Stage::eCopy, AccessBit::eTransferWrite, vk::ImageLayout::eUndefined, true});
+  pass(name, [&] { commands_.copyBuffer(from.handle(), to.handle(), vk::BufferCopy{.size = from.size()}); });
+}
+
+namespace {
+vk::BufferImageCopy whole(const Image& image) {
+  return {.imageSubresource = {image.aspect(), 0, 0, 1}, .imageExtent = {image.shape().width, image.shape().height, 1}};
+}
+}  // namespace
+
+void Frame::copy(const std::string& name, const Image& from, const Buffer& to) {
+  use(from, {Stage::eCopy, AccessBit::eTransferRead, vk::ImageLayout::eTransferSrcOptimal});
+  use(to, {Stage::eCopy, AccessBit::eTransferWrite, vk::ImageLayout::eUndefined, true});
+  pass(name, [&] {
+    commands_.copyImageToBuffer(from.handle(), vk::ImageLayout::eTransferSrcOptimal, to.handle(), whole(from));
+  });
+}
+
+void Frame::copy(const std::string& name, const Buffer& from, const Image& to) {
+  use(from, {Stage::eCopy, AccessBit::eTransferRead});
+  use(to, {Stage::eCopy, AccessBit::eTransferWrite, vk::ImageLayout::eTransferDstOptimal, true});
+  pass(name, [&] {
+    commands_.copyBufferToImage(from.handle(), to.handle(), vk::ImageLayout::eTransferDstOptimal, whole(to));
+  });
+}
+
+void Frame::to_host(const Buffer& buffer) { use(buffer, {Stage::eHost, AccessBit::eHostRead}); }
+
+void Frame::use(const Binding& binding, vk::PipelineStageFlags2 stages) {
+  const auto read = binding.kind == Kind::sampled_image ? AccessBit::eShaderSampledRead : AccessBit::eShaderStorageRead;
+  Access access{stages, read, vk::ImageLayout::eUndefined, binding.writes};
+  if (binding.writes) access.access |= AccessBit::eShaderStorageWrite;
+  if (binding.image != nullptr) {
+    access.layout = binding.kind == Kind::sampled_image ? vk::ImageLayout::eShaderReadOnlyOptimal : vk::ImageLayout::eGeneral;
+    use(*binding.image, access);
+  } else {
+    use(*binding.buffer, access);
+  }
+}
+
+void Frame::use(const Image& image, const Access& access) {
+  const auto old_layout = image.state().layout;
+  const Wait wait = advance(image.state(), access.stages, access.access, access.layout, access.writes);
+  if (!wait.needed) return;
+  image_barriers_.push_back({.srcStageMask = wait.stages,
+                             .srcAccessMask = wait.access,
+                             .dstStageMask = access.stages,
+                             .dstAccessMask = access.access,
+                             .oldLayout = old_layout,
+                             .newLayout = access.layout,
+                             .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+                             .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+                             .image = image.handle(),
+                             .subresourceRange = {image.aspect(), 0, 1, 0, image.shape().layers}});
+}
+
+void Frame::use(const Buffer& buffer, const Access& access) {
+  const Wait wait =
+      advance(buffer.state(), access.stages, access.access, vk::ImageLayout::eUndefined, access.writes);
+  if (!wait.needed) return;
+  buffer_barriers_.push_back({.srcStageMask = wait.stages,
+                              .srcAccessMask = wait.access,
+                              .dstStageMask = access.stages,
+                              .dstAccessMask = access.access,
+                              .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+                              .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+                              .buffer = buffer.handle(),
+                              .size = VK_WHOLE_SIZE});
+}
+
+void Frame::flush_barriers() {
+  if (image_barriers_.empty() && buffer_barriers_.empty()) return;
+  commands_.pipelineBarrier2({.bufferMemoryBarrierCount = static_cast<std::uint32_t>(buffer_barriers_.size()),
+                              .pBufferMemoryBarriers = buffer_barriers_.data(),
+                              .imageMemoryBarrierCount = static_cast<std::uint32_t>(image_barriers_.size()),
+                              .pImageMemoryBarriers = image_barriers_.data()});
+  image_barriers_.clear();
+  buffer_barriers_.clear();
+}
+
+void Frame::submit_and_wait() {
+  flush_barriers();
+  commands_.end();
+  const vk::raii::Fence fence(device_.handle(), vk::FenceCreateInfo{});
+  const vk::CommandBufferSubmitInfo submit{.commandBuffer = *commands_};
+  device_.queue().submit2(vk::SubmitInfo2{.commandBufferInfoCount = 1, .pCommandBufferInfos = &submit}, *fence);
+  if (device_.handle().waitForFences(*fence, true, UINT64_MAX) != vk::Result::eSuccess)
+    throw std::runtime_error("the device did not finish a frame");
+  std::vector<std::uint64_t> ticks;
+  for (std::size_t pool = 0; pool < queries_.size(); ++pool) {
+    const auto used = std::min<std::size_t>(queries_a_pool, 2 * timed_.size() - pool * queries_a_pool);
+    const auto [result, values] = queries_[pool].getResults<std::uint64_t>(
+        0, static_cast<std::uint32_t>(used), used * 8, 8, vk::QueryResultFlagBits::e64 | vk::QueryResultFlagBits::eWait);
+    ticks.insert(ticks.end(), values.begin(), values.end());
+  }
+  for (const Timed& timed : timed_) {
+    PassTime& time = times_[timed.pass];
+    ++time.calls;
+    time.gpu_ms += static_cast<double>(ticks[timed.query + 1] - ticks[timed.query]) * device_.timestamp_period() * 1e-6;
+  }
+}
+
+}  // namespace lichtveld::gpu

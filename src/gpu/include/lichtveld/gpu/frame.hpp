@@ -1,0 +1,136 @@
+// A frame of GPU work: passes in order, each with its debug label, timestamps and barriers, which nothing else adds.
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "lichtveld/gpu/pipeline.hpp"
+#include "lichtveld/gpu/resources.hpp"
+
+namespace lichtveld::gpu {
+
+// What each pass has cost so far.
+struct PassTime {
+  std::uint64_t calls = 0;
+  double gpu_ms = 0;  // summed over the calls
+};
+using PassTimes = std::map<std::string, PassTime>;
+
+// A resource as a shader sees it.
+struct Binding {
+  Kind kind;
+  const Image* image = nullptr;
+  const Buffer* buffer = nullptr;
+  vk::Sampler sampler = {};
+  bool writes = false;
+};
+Binding sampled(const Image& image, const vk::raii::Sampler& sampler);
+Binding reads(const Image& image);  // storage image
+Binding writes(const Image& image);  // storage image; also for reading and writing
+Binding reads(const Buffer& buffer);  // storage buffer
+Binding writes(const Buffer& buffer);
+
+// One colour or stencil attachment of a render pass: one layer of an image, cleared first unless it is kept.
+struct Attachment {
+  const Image* image;
+  std::optional<vk::ClearValue> clear;
+  std::uint32_t layer = 0;
+};
+
+struct Target {
+  vk::Extent2D extent;
+  std::vector<Attachment> colours = {};
+  std::optional<Attachment> stencil = {};
+};
+
+// Records draws inside Frame::render.
+class Draw {
+ public:
+  // Binds a pipeline and its resources, which the pass must have listed.
+  void bind(const GraphicsPipeline& pipeline, const std::vector<Binding>& bindings = {});
+  template <typename Constants>
+  void push(const Constants& constants) {
+    push_bytes(std::as_bytes(std::span(&constants, 1)));
+  }
+  void stencil_reference(std::uint32_t value);
+  void geometry(const Buffer& vertices, const Buffer& indices);  // 32-bit indices
+  void indexed(std::uint32_t first, std::uint32_t count);
+  void full_screen_triangle();
+
+ private:
+  friend class Frame;
+  explicit Draw(const vk::raii::CommandBuffer& commands) : commands_(commands) {}
+  void push_bytes(std::span<const std::byte> bytes);
+
+  const vk::raii::CommandBuffer& commands_;
+  const GraphicsPipeline* bound_ = nullptr;
+};
+
+class Frame {
+ public:
+  // Starts recording. Times of its passes are added to `times` when it is submitted.
+  Frame(const Device& device, PassTimes& times);
+
+  // A compute pass: bindings in the order of the pipeline's kinds, workgroups in x and y.
+  template <typename Constants>
+  void compute(const ComputePipeline& pipeline, const std::vector<Binding>& bindings, const Constants& constants,
+               std::uint32_t groups_x, std::uint32_t groups_y) {
+    compute_bytes(pipeline, bindings, std::as_bytes(std::span(&constants, 1)), groups_x, groups_y);
+  }
+  void compute(const ComputePipeline& pipeline, const std::vector<Binding>& bindings, std::uint32_t groups_x,
+               std::uint32_t groups_y) {
+    compute_bytes(pipeline, bindings, {}, groups_x, groups_y);
+  }
+
+  // A render pass. `bindings` lists what its shaders touch; `inputs` are vertex and index buffers.
+  void render(const std::string& name, const Target& target, const std::vector<Binding>& bindings,
+              const std::vector<const Buffer*>& inputs, const std::function<void(Draw&)>& draw);
+
+  // Small jobs that are passes too, so that captures and timers show them.
+  void clear(const std::string& name, const Image& image, vk::ClearColorValue value);
+  void clear(const std::string& name, const Buffer& buffer, std::uint32_t word = 0);
+  void copy(const std::string& name, const Buffer& from, const Buffer& to);
+  void copy(const std::string& name, const Image& from, const Buffer& to);  // layer 0, tightly packed
+  void copy(const std::string& name, const Buffer& from, const Image& to);
+
+  // Makes what the frame wrote to a host buffer visible to the host.
+  void to_host(const Buffer& buffer);
+
+  // Submits and waits until all is done; reads the timestamps. The frame is then spent.
+  void submit_and_wait();
+
+ private:
+  struct Access {
+    vk::PipelineStageFlags2 stages;
+    vk::AccessFlags2 access;
+    vk::ImageLayout layout = vk::ImageLayout::eUndefined;  // of images
+    bool writes = false;
+  };
+  struct Timed {
+    std::string pass;
+    std::uint32_t query;  // the start's; the end's follows
+  };
+
+  void pass(const std::string& name, const std::function<void()>& record);
+  void compute_bytes(const ComputePipeline& pipeline, const std::vector<Binding>& bindings,
+                     std::span<const std::byte> constants, std::uint32_t groups_x, std::uint32_t groups_y);
+  void use(const Binding& binding, vk::PipelineStageFlags2 stages);
+  void use(const Image& image, const Access& access);
+  void use(const Buffer& buffer, const Access& access);
+  void flush_barriers();
+
+  const Device& device_;
+  PassTimes& times_;
+  vk::raii::CommandBuffer commands_ = nullptr;
+  std::vector<vk::raii::QueryPool> queries_;
+  std::vector<Timed> timed_;
+  std::vector<vk::ImageMemoryBarrier2> image_barriers_;
+  std::vector<vk::BufferMemoryBarrier2> buffer_barriers_;
+};
+
+}  // namespace lichtveld::gpu

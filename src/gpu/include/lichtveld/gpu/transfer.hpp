@@ -1,0 +1,43 @@
+// Whole buffers and images between host and device, each as a frame of its own.
+#pragma once
+
+#include <cstring>
+
+#include "lichtveld/gpu/frame.hpp"
+
+namespace lichtveld::gpu {
+
+// A device buffer with these contents (at least one element is made, so that empty scenes bind).
+template <typename T>
+Buffer upload(const Device& device, const std::string& name, std::span<const T> contents, vk::BufferUsageFlags usage) {
+  const vk::DeviceSize bytes = std::max<vk::DeviceSize>(sizeof(T), contents.size_bytes());
+  Buffer staging(device, name + " (staging)", bytes, vk::BufferUsageFlagBits::eTransferSrc, Memory::host);
+  std::memcpy(staging.bytes().data(), contents.data(), contents.size_bytes());
+  Buffer buffer(device, name, bytes, usage | vk::BufferUsageFlagBits::eTransferDst);
+  PassTimes times;
+  Frame frame(device, times);
+  frame.copy("upload " + name, staging, buffer);
+  frame.submit_and_wait();
+  return buffer;
+}
+
+// A sampled 8-bit sRGB image with these pixels.
+Image upload_srgb(const Device& device, const std::string& name, std::uint32_t width, std::uint32_t height,
+                  std::span<const std::uint8_t> rgba);
+
+// The pixels of layer 0, row 0 first; T is as large as a pixel. The image needs eTransferSrc.
+template <typename T>
+std::vector<T> download(const Device& device, const Image& image) {
+  std::vector<T> pixels(std::size_t{image.shape().width} * image.shape().height);
+  Buffer staging(device, image.name() + " (read back)", pixels.size() * sizeof(T), vk::BufferUsageFlagBits::eTransferDst,
+                 Memory::host);
+  PassTimes times;
+  Frame frame(device, times);
+  frame.copy("read back " + image.name(), image, staging);
+  frame.to_host(staging);
+  frame.submit_and_wait();
+  std::memcpy(pixels.data(), staging.bytes().data(), pixels.size() * sizeof(T));
+  return pixels;
+}
+
+}  // namespace lichtveld::gpu

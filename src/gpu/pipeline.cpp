@@ -1,0 +1,141 @@
+#include "lichtveld/gpu/pipeline.hpp"
+
+#include <utility>
+
+namespace lichtveld::gpu {
+
+namespace {
+
+// Descriptor types by Kind.
+constexpr vk::DescriptorType descriptor_types[] = {vk::DescriptorType::eCombinedImageSampler,
+                                                   vk::DescriptorType::eStorageImage,
+                                                   vk::DescriptorType::eStorageBuffer};
+
+vk::ShaderStageFlags stages_of(vk::PipelineBindPoint bind_point) {
+  return bind_point == vk::PipelineBindPoint::eCompute ? vk::ShaderStageFlagBits::eCompute
+                                                       : vk::ShaderStageFlagBits::eAllGraphics;
+}
+
+vk::raii::ShaderModule make_module(const Device& device, Spirv code) {
+  return {device.handle(), vk::ShaderModuleCreateInfo{.codeSize = code.size_bytes(), .pCode = code.data()}};
+}
+
+// Specialisation constants 0, 1, .. as the interface lists them.
+class Specialisation {
+ public:
+  explicit Specialisation(const std::vector<std::uint32_t>& values) {
+    for (std::uint32_t id = 0; id < values.size(); ++id)
+      entries_.push_back({.constantID = id, .offset = id * 4, .size = 4});
+    info_ = {.mapEntryCount = static_cast<std::uint32_t>(entries_.size()),
+             .pMapEntries = entries_.data(),
+             .dataSize = values.size() * 4,
+             .pData = values.data()};
+  }
+  const vk::SpecializationInfo* get() const { return &info_; }
+
+ private:
+  std::vector<vk::SpecializationMapEntry> entries_;
+  vk::SpecializationInfo info_;
+};
+
+}  // namespace
+
+Pipeline::Pipeline(const Device& device, std::string name, const Interface& interface, vk::PipelineBindPoint bind_point)
+    : name_(std::move(name)), kinds_(interface.kinds), bind_point_(bind_point) {
+  std::vector<vk::DescriptorSetLayoutBinding> bindings;
+  for (std::uint32_t index = 0; index < kinds_.size(); ++index)
+    bindings.push_back({.binding = index,
+                        .descriptorType = descriptor_types[static_cast<int>(kinds_[index])],
+                        .descriptorCount = 1,
+                        .stageFlags = stages_of(bind_point)});
+  set_layout_ = {device.handle(),
+                 vk::DescriptorSetLayoutCreateInfo{.flags = vk::DescriptorSetLayoutCreateFlagBits::ePushDescriptorKHR,
+                                                   .bindingCount = static_cast<std::uint32_t>(bindings.size()),
+                                                   .pBindings = bindings.data()}};
+  const vk::PushConstantRange range{.stageFlags = stages_of(bind_point), .size = interface.push_bytes};
+  layout_ = {device.handle(), vk::PipelineLayoutCreateInfo{.setLayoutCount = 1,
+                                                           .pSetLayouts = &*set_layout_,
+                                                           .pushConstantRangeCount = interface.push_bytes > 0 ? 1u : 0u,
+                                                           .pPushConstantRanges = &range}};
+}
+
+ComputePipeline::ComputePipeline(const Device& device, std::string name, Spirv shader, const Interface& interface)
+    : Pipeline(device, std::move(name), interface, vk::PipelineBindPoint::eCompute) {
+  const auto module = make_module(device, shader);
+  const Specialisation specialisation(interface.specialisation);
+  pipeline_ = {device.handle(), nullptr,
+               vk::ComputePipelineCreateInfo{.stage = {.stage = vk::ShaderStageFlagBits::eCompute,
+                                                       .module = *module,
+                                                       .pName = "main",
+                                                       .pSpecializationInfo = specialisation.get()},
+                                             .layout = *layout_}};
+  device.name(pipeline_, name_);
+}
+
+GraphicsPipeline::GraphicsPipeline(const Device& device, std::string name, Spirv vertex, Spirv fragment,
+                                   const Interface& interface, const GraphicsState& state)
+    : Pipeline(device, std::move(name), interface, vk::PipelineBindPoint::eGraphics) {
+  const Specialisation specialisation(interface.specialisation);
+  const auto vertex_module = make_module(device, vertex);
+  vk::raii::ShaderModule fragment_module = nullptr;
+  std::vector<vk::PipelineShaderStageCreateInfo> stages = {{.stage = vk::ShaderStageFlagBits::eVertex,
+                                                            .module = *vertex_module,
+                                                            .pName = "main",
+                                                            .pSpecializationInfo = specialisation.get()}};
+  if (!fragment.empty()) {
+    fragment_module = make_module(device, fragment);
+    stages.push_back({.stage = vk::ShaderStageFlagBits::eFragment,
+                      .module = *fragment_module,
+                      .pName = "main",
+                      .pSpecializationInfo = specialisation.get()});
+  }
+
+  const vk::VertexInputBindingDescription binding{.stride = state.vertex_stride};
+  std::vector<vk::VertexInputAttributeDescription> attributes;
+  for (const auto& attribute : state.attributes)
+    attributes.push_back({.location = attribute.location, .format = attribute.format, .offset = attribute.offset});
+  const vk::PipelineVertexInputStateCreateInfo input{
+      .vertexBindingDescriptionCount = state.vertex_stride > 0 ? 1u : 0u,
+      .pVertexBindingDescriptions = &binding,
+      .vertexAttributeDescriptionCount = static_cast<std::uint32_t>(attributes.size()),
+      .pVertexAttributeDescriptions = attributes.data()};
+  const vk::PipelineInputAssemblyStateCreateInfo assembly{.topology = vk::PrimitiveTopology::eTriangleList};
+  const vk::PipelineViewportStateCreateInfo viewport{.viewportCount = 1, .scissorCount = 1};
+  const vk::PipelineRasterizationStateCreateInfo raster{.cullMode = state.cull, .frontFace = state.front, .lineWidth = 1};
+  const vk::PipelineMultisampleStateCreateInfo multisample{
+      .rasterizationSamples = static_cast<vk::SampleCountFlagBits>(state.samples), .pSampleMask = &state.sample_mask};
+  const bool stencil = state.stencil_format != vk::Format::eUndefined;
+  const vk::PipelineDepthStencilStateCreateInfo depth_stencil{
+      .stencilTestEnable = stencil, .front = state.stencil, .back = state.stencil};
+  const vk::PipelineColorBlendAttachmentState write_all{
+      .colorWriteMask = fragment.empty() ? vk::ColorComponentFlags{}
+                                         : vk::ColorComponentFlagBits::eR | vk::ColorComponentFlagBits::eG |
+                                               vk::ColorComponentFlagBits::eB | vk::ColorComponentFlagBits::eA};
+  const std::vector blends(state.colours.size(), write_all);
+  const vk::PipelineColorBlendStateCreateInfo blend{.attachmentCount = static_cast<std::uint32_t>(blends.size()),
+                                                    .pAttachments = blends.data()};
+  const vk::DynamicState dynamic_states[] = {vk::DynamicState::eViewport, vk::DynamicState::eScissor,
+                                             vk::DynamicState::eStencilReference};
+  const vk::PipelineDynamicStateCreateInfo dynamic{.dynamicStateCount = stencil ? 3u : 2u,
+                                                   .pDynamicStates = dynamic_states};
+  const vk::PipelineRenderingCreateInfo rendering{
+      .colorAttachmentCount = static_cast<std::uint32_t>(state.colours.size()),
+      .pColorAttachmentFormats = state.colours.data(),
+      .stencilAttachmentFormat = state.stencil_format};
+  pipeline_ = {device.handle(), nullptr,
+               vk::GraphicsPipelineCreateInfo{.pNext = &rendering,
+                                              .stageCount = static_cast<std::uint32_t>(stages.size()),
+                                              .pStages = stages.data(),
+                                              .pVertexInputState = &input,
+                                              .pInputAssemblyState = &assembly,
+                                              .pViewportState = &viewport,
+                                              .pRasterizationState = &raster,
+                                              .pMultisampleState = &multisample,
+                                              .pDepthStencilState = &depth_stencil,
+                                              .pColorBlendState = &blend,
+                                              .pDynamicState = &dynamic,
+                                              .layout = *layout_}};
+  device.name(pipeline_, name_);
+}
+
+}  // namespace lichtveld::gpu
