@@ -1,0 +1,158 @@
+// What is checked of a file before tinygltf sees it.
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <nlohmann/json.hpp>
+
+#include "lichtveld/scene/scene.hpp"
+#include "model.hpp"
+
+namespace lichtveld::scene {
+namespace {
+
+using nlohmann::json;
+
+constexpr int kMaxNesting = 64;  // JSON levels; tinygltf recurses into extras, exporters need < 20
+constexpr std::size_t kMaxJsonBytes = 64u << 20;   // a parsed document takes several times its text
+constexpr std::size_t kMaxBufferBytes = 1u << 30;  // over all buffers
+constexpr std::array kKnownExtensions = {"KHR_materials_emissive_strength"};
+
+std::uint32_t little_endian(std::span<const std::uint8_t> bytes, std::size_t at) {
+  return bytes[at] | bytes[at + 1] << 8 | bytes[at + 2] << 16 | std::uint32_t{bytes[at + 3]} << 24;
+}
+
+// The JSON chunk of a .glb, after the lengths of all chunks have been checked against the file.
+std::span<const std::uint8_t> json_chunk(std::span<const std::uint8_t> bytes) {
+  if (bytes.size() < 20)
+    throw SceneError("truncated: a .glb has at least 20 bytes, this one " + std::to_string(bytes.size()));
+  if (const auto version = little_endian(bytes, 4); version != 2) {
+    throw SceneError("glTF binary version " + std::to_string(version) + ", expected 2: export it as glTF 2.0");
+  }
+  const std::size_t length = little_endian(bytes, 8);
+  if (length > bytes.size()) {
+    throw SceneError("truncated: its header promises " + std::to_string(length) + " bytes, the file has " +
+                     std::to_string(bytes.size()));
+  }
+  for (std::size_t at = 12, chunk = 0; at < length; ++chunk) {
+    if (length - at < 8 || little_endian(bytes, at) > length - at - 8) {
+      throw SceneError("damaged: chunk " + std::to_string(chunk) + " is longer than the file");
+    }
+    at += 8 + little_endian(bytes, at);
+  }
+  return bytes.subspan(20, little_endian(bytes, 12));
+}
+
+json parse(std::span<const std::uint8_t> text) {
+  if (text.size() > kMaxJsonBytes) throw SceneError("its JSON is larger than 64 MiB");
+  const auto limit_nesting = [](int depth, json::parse_event_t, json&) {
+    if (depth > kMaxNesting) throw SceneError("its JSON nests deeper than 64 levels");
+    return true;
+  };
+  try {
+    json root = json::parse(text.begin(), text.end(), limit_nesting);
+    if (!root.is_object()) throw SceneError("its JSON is no object: not a glTF file");
+    return root;
+  } catch (const json::exception& e) {
+    throw SceneError(std::string("not a glTF file (neither a .glb nor JSON): ") + e.what());
+  }
+}
+
+const json& list(const json& root, const char* key) {
+  static const json none = json::array();
+  const auto found = root.find(key);
+  if (found == root.end()) return none;
+  if (!found->is_array()) throw SceneError(std::string("\"") + key + "\" is no array");
+  for (const json& entry : *found) {
+    if (!entry.is_object()) throw SceneError(std::string("\"") + key + "\" holds something that is no object");
+  }
+  return *found;
+}
+
+// A count or offset in bytes; tinygltf takes what is no such number for 0.
+std::uint64_t bytes_of(const json& entry, const char* key, const std::string& what) {
+  const auto found = entry.find(key);
+  if (found == entry.end()) return 0;
+  if (!found->is_number_unsigned()) throw SceneError(what + ": " + key + " is no whole number of bytes");
+  return found->get<std::uint64_t>();
+}
+
+void check_uri(const json& entry, const std::string& what) {
+  const auto found = entry.find("uri");
+  if (found == entry.end()) return;
+  if (!found->is_string()) throw SceneError(what + ": uri is no string");
+  const std::string uri = found->get<std::string>();
+  if (uri.starts_with("data:")) return;
+  std::string lower = uri;
+  std::ranges::transform(lower, lower.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  // A percent sign may hide the same characters; %20 and the like stay allowed.
+  const auto holds = [&](const char* part) { return lower.find(part) != std::string::npos; };
+  if (uri.empty() || uri.front() == '/' || holds("..") || holds("\\") || holds(":") || holds("%2e") ||
+      holds("%2f") || holds("%5c") || holds("%3a") || holds("%00")) {
+    throw SceneError(what + ": uri \"" + uri.substr(0, 80) +
+                     "\" leaves the scene's folder; put the file beside the scene, or export one .glb");
+  }
+}
+
+void check_extensions(const json& root) {
+  const auto found = root.find("extensionsRequired");
+  if (found == root.end()) return;
+  std::string unknown;
+  for (const json& name : *found) {
+    const std::string text = name.is_string() ? name.get<std::string>() : name.dump();
+    if (std::ranges::find(kKnownExtensions, text) == kKnownExtensions.end())
+      unknown += (unknown.empty() ? "" : ", ") + text;
+  }
+  if (!unknown.empty()) {
+    throw SceneError("requires the extension(s) " + unknown +
+                     ", which are not supported: export without compression, "
+                     "quantisation and other required extensions");
+  }
+}
+
+}  // namespace
+
+void check_container(std::span<const std::uint8_t> bytes) {
+  const bool binary = bytes.size() >= 4 && std::memcmp(bytes.data(), "glTF", 4) == 0;
+  const json root = parse(binary ? json_chunk(bytes) : bytes);
+  check_extensions(root);
+
+  const json& buffers = list(root, "buffers");
+  std::uint64_t total = 0;
+  for (std::size_t i = 0; i < buffers.size(); ++i) {
+    const std::string what = "buffer " + std::to_string(i);
+    check_uri(buffers[i], what);
+    // Each such buffer would be a copy of the whole binary chunk.
+    if (!buffers[i].contains("uri") && (!binary || i > 0)) throw SceneError(what + " has no uri");
+    const std::uint64_t length = bytes_of(buffers[i], "byteLength", what);
+    if (length > kMaxBufferBytes || (total += length) > kMaxBufferBytes) {
+      throw SceneError(what + ": the scene's buffers are larger than 1 GiB together");
+    }
+  }
+  const json& views = list(root, "bufferViews");
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    const std::string what = "buffer view " + std::to_string(i);
+    if (!views[i].contains("buffer")) throw SceneError(what + " names no buffer");
+    const std::uint64_t buffer = bytes_of(views[i], "buffer", what);
+    if (buffer >= buffers.size()) throw SceneError(what + ": there is no buffer " + std::to_string(buffer));
+    const std::uint64_t size = bytes_of(buffers[buffer], "byteLength", what);
+    const std::uint64_t offset = bytes_of(views[i], "byteOffset", what);
+    const std::uint64_t length = bytes_of(views[i], "byteLength", what);
+    bytes_of(views[i], "byteStride", what);
+    if (length == 0 || offset > size || length > size - offset) {
+      throw SceneError(what + ": bytes " + std::to_string(offset) + " + " + std::to_string(length) +
+                       " do not lie in buffer " + std::to_string(buffer) + " of " + std::to_string(size));
+    }
+  }
+  const json& accessors = list(root, "accessors");
+  for (std::size_t i = 0; i < accessors.size(); ++i) {
+    const std::string what = "accessor " + std::to_string(i);
+    bytes_of(accessors[i], "byteOffset", what);
+    bytes_of(accessors[i], "count", what);
+  }
+  const json& images = list(root, "images");
+  for (std::size_t i = 0; i < images.size(); ++i) check_uri(images[i], "image " + std::to_string(i));
+  for (const char* key : {"nodes", "meshes", "materials", "textures", "scenes"}) list(root, key);
+}
+
+}  // namespace lichtveld::scene

@@ -1,0 +1,62 @@
+#include "image.hpp"
+
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+
+namespace lichtveld::scene {
+namespace {
+
+// The two formats of glTF 2.0, by their first bytes, as OpenImageIO calls them.
+const char* format_of(std::span<const unsigned char> bytes) {
+  if (bytes.size() > 8 && bytes[0] == 0x89 && bytes[1] == 'P' && bytes[2] == 'N' && bytes[3] == 'G')
+    return "png";
+  if (bytes.size() > 3 && bytes[0] == 0xff && bytes[1] == 0xd8 && bytes[2] == 0xff) return "jpeg";
+  return nullptr;
+}
+
+}  // namespace
+
+Texture decode_image(std::span<const unsigned char> bytes, std::size_t max_pixels, const std::string& what) {
+  const char* format = format_of(bytes);
+  if (!format) throw SceneError(what + " is neither PNG nor JPEG");
+
+  OIIO::Filesystem::IOMemReader memory(bytes.data(), bytes.size());
+  OIIO::ImageSpec config;
+  config["oiio:UnassociatedAlpha"] = 1;
+  // By the format's name only that reader is tried; by a file's name every one would be.
+  const auto input = OIIO::ImageInput::create(format);
+  OIIO::ImageSpec spec;
+  if (!input) throw SceneError(what + " cannot be read: OpenImageIO has no reader for " + format);
+  if (!input->set_ioproxy(&memory) || !input->open("memory", spec, config)) {
+    const std::string reason = input->geterror();
+    throw SceneError(what + " does not decode: " + reason);
+  }
+  if (spec.width < 1 || spec.height < 1 || spec.nchannels < 1 || spec.nchannels > 4) {
+    throw SceneError(what + " has no pixels of 1 to 4 channels");
+  }
+  Texture texture;
+  texture.width = static_cast<std::uint32_t>(spec.width);
+  texture.height = static_cast<std::uint32_t>(spec.height);
+  const std::size_t pixels = std::size_t{texture.width} * texture.height;
+  if (pixels > max_pixels) {
+    throw SceneError(what + ", " + std::to_string(texture.width) + " x " + std::to_string(texture.height) +
+                     ", is too large: 64 million pixels are allowed over all textures");
+  }
+
+  const auto channels = static_cast<std::size_t>(spec.nchannels);
+  std::vector<std::uint8_t> raw(pixels * channels);
+  if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::UINT8, raw.data())) {
+    const std::string reason = input->geterror();
+    throw SceneError(what + " does not decode: " + reason);
+  }
+  texture.rgba.resize(pixels * 4);
+  const bool grey = channels < 3;
+  const bool alpha = channels == 2 || channels == 4;
+  for (std::size_t i = 0; i < pixels; ++i) {
+    for (std::size_t c = 0; c < 3; ++c) texture.rgba[4 * i + c] = raw[channels * i + (grey ? 0 : c)];
+    texture.rgba[4 * i + 3] = alpha ? raw[channels * i + channels - 1] : 255;
+  }
+  return texture;
+}
+
+}  // namespace lichtveld::scene

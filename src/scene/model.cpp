@@ -1,0 +1,104 @@
+// The file system as tinygltf may see it, and the call of tinygltf.
+#include "model.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <fstream>
+
+#include "lichtveld/scene/scene.hpp"
+
+namespace lichtveld::scene {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::uintmax_t kMaxFileBytes =
+    1u << 30;  // a scene and all files beside it, each as often as it is named
+
+// The scene's folder, and how many bytes may still be read from it.
+struct Folder {
+  fs::path path;
+  std::uintmax_t budget = kMaxFileBytes;
+};
+
+std::vector<std::uint8_t> read_file(const fs::path& file, std::uintmax_t limit) {
+  std::error_code error;
+  const fs::file_status status = fs::status(file, error);
+  if (!fs::exists(status)) throw SceneError("no such file: check the path");
+  if (!fs::is_regular_file(status)) throw SceneError("not a file: name a .glb or .gltf file");
+  const std::uintmax_t size = fs::file_size(file, error);
+  if (error) throw SceneError("cannot be read: " + error.message());
+  if (size == 0) throw SceneError("empty file");
+  if (size > limit) throw SceneError("larger than 1 GiB");
+  std::vector<std::uint8_t> bytes(size);
+  std::ifstream in(file, std::ios::binary);
+  if (!in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size))) {
+    throw SceneError("cannot be read: check its permissions");
+  }
+  return bytes;
+}
+
+// URIs were checked already; this also catches symbolic links that lead out of the folder, and the working
+// folder, in which tinygltf looks second.
+bool lies_beside(const std::string& name, void* folder) {
+  std::error_code error;
+  const fs::path root = fs::weakly_canonical(static_cast<const Folder*>(folder)->path, error);
+  const fs::path file = fs::weakly_canonical(name, error);
+  return !error && std::mismatch(root.begin(), root.end(), file.begin(), file.end()).first == root.end() &&
+         fs::is_regular_file(file, error);
+}
+
+bool read_beside(std::vector<unsigned char>* out, std::string* error, const std::string& name, void* user) {
+  auto& folder = *static_cast<Folder*>(user);
+  try {
+    *out = read_file(name, folder.budget);
+  } catch (const SceneError& e) {
+    *error += e.what();
+    return false;
+  }
+  folder.budget -= out->size();
+  return true;
+}
+
+// Keeps encoded bytes for later. Those in buffer views are found again through the view.
+bool keep_encoded(tinygltf::Image* image, int, std::string*, std::string*, int, int, const unsigned char* bytes,
+                  int size, void*) {
+  if (image->bufferView < 0) image->image.assign(bytes, bytes + size);
+  return true;
+}
+
+}  // namespace
+
+tinygltf::Model read_model(const fs::path& file) {
+  const std::vector<std::uint8_t> bytes = read_file(file, kMaxFileBytes);
+  check_container(bytes);
+
+  Folder folder{file.has_parent_path() ? file.parent_path() : fs::path(".")};
+  tinygltf::TinyGLTF reader;
+  reader.SetFsCallbacks(
+      {&lies_beside, [](const std::string& name, void*) { return name; }, &read_beside, nullptr, &folder});
+  reader.SetImageLoader(&keep_encoded, nullptr);
+  tinygltf::Model model;
+  std::string error, warning;
+  const auto size = static_cast<unsigned int>(bytes.size());
+  const std::string base = folder.path.string();
+  const bool read = bytes.size() > 4 && bytes[0] == 'g'
+                        ? reader.LoadBinaryFromMemory(&model, &error, &warning, bytes.data(), size, base)
+                        : reader.LoadASCIIFromString(&model, &error, &warning,
+                                                     reinterpret_cast<const char*>(bytes.data()), size, base);
+  // Some of its errors leave out a primitive and go on: what is missing then would be missing in the picture.
+  if (!read || !error.empty()) {
+    std::ranges::replace(error, '\n', ' ');
+    throw SceneError("not valid glTF: " + (error.empty() ? "unknown reason" : error));
+  }
+  if (!warning.empty()) spdlog::warn("{}: {}", file.string(), warning);
+  return model;
+}
+
+std::string node_name(const tinygltf::Model& model, int node) {
+  const std::string& name = model.nodes[static_cast<std::size_t>(node)].name;
+  return name.empty() ? "node " + std::to_string(node) : name;
+}
+
+}  // namespace lichtveld::scene

@@ -1,0 +1,25 @@
+// A glTF file as tinygltf's model, checked as far as a model alone can be.
+#pragma once
+
+#include <tiny_gltf.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+
+namespace lichtveld::scene {
+
+// Refuses what tinygltf would read past, hang on or silently take for zero: chunk lengths of a .glb, JSON that
+// nests too deeply, buffer views outside their buffer, offsets that are no counts, URIs that leave the folder,
+// required extensions that we do not know. Throws SceneError without the file's name.
+void check_container(std::span<const std::uint8_t> bytes);
+
+// The parsed file. Buffers are loaded; an image holds its encoded bytes when it came by URI, and nothing when
+// it lies in a buffer view. Throws SceneError without the file's name.
+tinygltf::Model read_model(const std::filesystem::path& file);
+
+// How messages call a node: "name", or node 7 where it has none.
+std::string node_name(const tinygltf::Model& model, int node);
+
+}  // namespace lichtveld::scene

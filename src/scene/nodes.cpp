@@ -1,0 +1,91 @@
+// The node tree, flattened.
+#include <algorithm>
+#include <cmath>
+#include <glm/ext/matrix_transform.hpp>
+#include <glm/gtc/quaternion.hpp>
+
+#include "model.hpp"
+#include "parts.hpp"
+
+namespace lichtveld::scene {
+namespace {
+
+void require(const std::vector<double>& values, std::size_t size, const std::string& what) {
+  if (values.size() != size) throw SceneError(what + " has " + std::to_string(values.size()) + " numbers");
+  for (double value : values) {
+    if (!std::isfinite(value)) throw SceneError(what + " holds a number that is not finite");
+  }
+}
+
+glm::dmat4 local_transform(const tinygltf::Node& node, const std::string& what) {
+  glm::dmat4 result(1);
+  if (!node.matrix.empty()) {
+    require(node.matrix, 16, what + ": matrix");
+    for (int i = 0; i < 16; ++i) result[i / 4][i % 4] = node.matrix[static_cast<std::size_t>(i)];
+    return result;
+  }
+  if (const auto& t = node.translation; !t.empty()) {
+    require(t, 3, what + ": translation");
+    result = glm::translate(result, glm::dvec3(t[0], t[1], t[2]));
+  }
+  if (const auto& r = node.rotation; !r.empty()) {
+    require(r, 4, what + ": rotation");
+    const glm::dquat rotation(r[3], r[0], r[1], r[2]);
+    if (!(glm::length(rotation) > 1e-6)) throw SceneError(what + ": rotation is no unit quaternion");
+    result *= glm::mat4_cast(glm::normalize(rotation));
+  }
+  if (const auto& s = node.scale; !s.empty()) {
+    require(s, 3, what + ": scale");
+    result = glm::scale(result, glm::dvec3(s[0], s[1], s[2]));
+  }
+  return result;
+}
+
+bool is_movable(const tinygltf::Node& node) {
+  if (!node.extras.IsObject() || !node.extras.Has("movable")) return false;
+  const tinygltf::Value& movable = node.extras.Get("movable");
+  return movable.IsBool() && movable.Get<bool>();
+}
+
+}  // namespace
+
+std::vector<PlacedNode> place_nodes(const tinygltf::Model& model) {
+  const int chosen = model.defaultScene < 0 ? 0 : model.defaultScene;
+  if (static_cast<std::size_t>(chosen) >= model.scenes.size()) {
+    throw SceneError("there is no scene " + std::to_string(chosen) + ": export with a scene");
+  }
+  std::vector<PlacedNode> result;
+  std::vector<bool> reached(model.nodes.size());
+  // Visits a node under its parent. A node that is reached twice has two parents or is its own ancestor, and
+  // walking on would take exponential time or never end.
+  std::vector<PlacedNode> open;
+  const auto enter = [&](int node, const glm::dmat4& parent, int movable, const std::string& from) {
+    if (node < 0 || static_cast<std::size_t>(node) >= model.nodes.size()) {
+      throw SceneError(from + ": there is no node " + std::to_string(node));
+    }
+    if (reached[static_cast<std::size_t>(node)]) {
+      throw SceneError("node \"" + node_name(model, node) +
+                       "\" is reached twice: the nodes form a cycle, or a node has "
+                       "two parents");
+    }
+    reached[static_cast<std::size_t>(node)] = true;
+    const tinygltf::Node& in = model.nodes[static_cast<std::size_t>(node)];
+    const std::string what = "node \"" + node_name(model, node) + "\"";
+    open.push_back({node, parent * local_transform(in, what), movable < 0 && is_movable(in) ? node : movable});
+  };
+  for (int node : model.scenes[static_cast<std::size_t>(chosen)].nodes) {
+    enter(node, glm::dmat4(1), -1, "scene " + std::to_string(chosen));
+  }
+  while (!open.empty()) {
+    const PlacedNode placed = open.back();
+    open.pop_back();
+    result.push_back(placed);
+    for (int child : model.nodes[static_cast<std::size_t>(placed.node)].children) {
+      enter(child, placed.world, placed.movable, "node \"" + node_name(model, placed.node) + "\"");
+    }
+  }
+  std::ranges::sort(result, {}, &PlacedNode::node);
+  return result;
+}
+
+}  // namespace lichtveld::scene

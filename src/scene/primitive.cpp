@@ -1,0 +1,201 @@
+// One glTF primitive to triangles in world space.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <unordered_map>
+
+#include "accessor.hpp"
+#include "parts.hpp"
+
+namespace lichtveld::scene {
+namespace {
+
+using Triangle = std::array<std::uint32_t, 3>;  // elements of the primitive's accessors
+
+// A triangle whose height is less than this share of its longest edge has no normal worth the name: a 32-bit
+// coordinate as long as the edge is rounded by as much.
+constexpr double kFlat = 1e-7;
+// Farther out, 32-bit positions are coarser than 6 cm; such scenes have their unit wrong.
+constexpr double kMaxCoordinate = 1e6;
+
+std::vector<Triangle> triangles_of(const tinygltf::Primitive& primitive, const std::optional<Accessor>& indices,
+                                   std::size_t vertices, std::size_t max_triangles, const std::string& what) {
+  const std::size_t count = indices ? indices->count() : vertices;
+  const bool is_list = primitive.mode == TINYGLTF_MODE_TRIANGLES;
+  if (is_list && count % 3 != 0) {
+    throw SceneError(what + ": " + std::to_string(count) + " corners are no whole number of triangles");
+  }
+  const std::size_t triangles = is_list ? count / 3 : count < 3 ? 0 : count - 2;
+  if (triangles > max_triangles)
+    throw SceneError(what + ": the scene has more than 4 million triangles; simplify it");
+  const auto corner = [&](std::size_t i) {
+    const std::uint32_t index = indices ? indices->index(i) : static_cast<std::uint32_t>(i);
+    if (index >= vertices) {
+      throw SceneError(what + ": index " + std::to_string(index) + " of " + std::to_string(vertices) +
+                       " vertices");
+    }
+    return index;
+  };
+  std::vector<Triangle> result;
+  result.reserve(triangles);
+  for (std::size_t i = 0; i < triangles; ++i) {
+    switch (primitive.mode) {
+      case TINYGLTF_MODE_TRIANGLES:
+        result.push_back({corner(3 * i), corner(3 * i + 1), corner(3 * i + 2)});
+        break;
+      case TINYGLTF_MODE_TRIANGLE_STRIP:  // every second one runs the other way round
+        result.push_back({corner(i), corner(i + 1 + i % 2), corner(i + 2 - i % 2)});
+        break;
+      default:
+        result.push_back({corner(i + 1), corner(i + 2), corner(0)});  // fan
+    }
+  }
+  return result;
+}
+
+int attribute(const tinygltf::Primitive& primitive, const std::string& name) {
+  const auto found = primitive.attributes.find(name);
+  return found == primitive.attributes.end() ? -1 : found->second;
+}
+
+// A required attribute with as many elements as there are positions.
+Accessor coordinates(const tinygltf::Model& model, const tinygltf::Primitive& primitive,
+                     const std::string& name, std::size_t vertices, const std::string& what,
+                     const std::string& advice) {
+  const int index = attribute(primitive, name);
+  if (!primitive.attributes.contains(name)) throw SceneError(what + " has no " + name + ": " + advice);
+  Accessor result(model, index, what + ", " + name);
+  result.require_vec2();
+  if (result.count() < vertices) throw SceneError(what + ": " + name + " has fewer elements than POSITION");
+  return result;
+}
+
+glm::vec3 world_position(const Accessor& positions, std::uint32_t i, const glm::dmat4& world,
+                         const std::string& what) {
+  const glm::dvec3 p = world * glm::dvec4(positions.vec3(i), 1);
+  for (int c = 0; c < 3; ++c) {
+    if (!(std::abs(p[c]) <= kMaxCoordinate)) {
+      throw SceneError(what + ": vertex " + std::to_string(i) +
+                       " is not finite or more than 1000 km away; positions are "
+                       "in metres");
+    }
+  }
+  return p;
+}
+
+glm::vec2 atlas_coordinate(const Accessor& atlas, std::uint32_t i, const std::string& what) {
+  const glm::vec2 uv = atlas.vec2(i);
+  if (!(uv.x >= 0 && uv.x <= 1 && uv.y >= 0 && uv.y <= 1)) {
+    throw SceneError(what + ": TEXCOORD_1 of vertex " + std::to_string(i) + " is (" + std::to_string(uv.x) +
+                     ", " + std::to_string(uv.y) +
+                     "), outside 0..1: pack the light-map charts into the unit square");
+  }
+  return uv;
+}
+
+// The normals of a primitive, or nothing where faces have to stand in for them.
+std::optional<Accessor> normals_of(const tinygltf::Model& model, const tinygltf::Primitive& primitive,
+                                   const std::vector<Triangle>& triangles, std::size_t vertices,
+                                   const std::string& what, Oddities& oddities) {
+  if (!primitive.attributes.contains("NORMAL")) return std::nullopt;
+  Accessor normals(model, attribute(primitive, "NORMAL"), what + ", NORMAL");
+  normals.require_vec3();
+  if (normals.count() < vertices) throw SceneError(what + ": NORMAL has fewer elements than POSITION");
+  for (const Triangle& triangle : triangles) {
+    for (std::uint32_t i : triangle) {
+      const double length = glm::length(glm::dvec3(normals.vec3(i)));
+      if (!(length > 1e-6 && length < 1e6)) {
+        ++oddities.bad_normals;
+        return std::nullopt;
+      }
+    }
+  }
+  return normals;
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> add_primitive(const tinygltf::Model& model, const tinygltf::Primitive& primitive,
+                                         const Placement& placement, int colour_set, std::size_t max_triangles,
+                                         Scene& scene, Oddities& oddities) {
+  const std::string what = "node \"" + placement.node + "\", primitive " + std::to_string(placement.primitive);
+  if (primitive.mode < TINYGLTF_MODE_POINTS || primitive.mode > TINYGLTF_MODE_TRIANGLE_FAN) {
+    throw SceneError(what + ": unknown mode " + std::to_string(primitive.mode));
+  }
+  if (primitive.mode < TINYGLTF_MODE_TRIANGLES) {
+    ++oddities.no_triangles;
+    return {};
+  }
+  if (!primitive.attributes.contains("POSITION")) throw SceneError(what + " has no POSITION");
+  const Accessor positions(model, attribute(primitive, "POSITION"), what + ", POSITION");
+  positions.require_vec3();
+  const std::size_t vertices = positions.count();
+  const Accessor atlas =
+      coordinates(model, primitive, "TEXCOORD_1", vertices, what,
+                  "unwrap the scene into a second UV map without overlaps (the light map's)");
+  std::optional<Accessor> colours;
+  if (colour_set >= 0) {
+    colours = coordinates(model, primitive, "TEXCOORD_" + std::to_string(colour_set), vertices, what,
+                          "its baseColorTexture asks for it");
+  }
+  std::optional<Accessor> indices;
+  if (primitive.indices != -1) {
+    indices.emplace(model, primitive.indices, what + ", indices");
+    indices->require_indices();
+  }
+  const std::vector<Triangle> triangles = triangles_of(primitive, indices, vertices, max_triangles, what);
+  const std::optional<Accessor> normals = normals_of(model, primitive, triangles, vertices, what, oddities);
+
+  const double determinant = glm::determinant(glm::dmat3(placement.world));
+  const bool mirrored = determinant < 0;
+  // The inverse transpose up to a positive factor, which exists for singular matrices too.
+  const glm::dmat3 m(placement.world);
+  const double side = mirrored ? -1 : 1;
+  const glm::dmat3 cofactors(side * glm::cross(m[1], m[2]), side * glm::cross(m[2], m[0]),
+                             side * glm::cross(m[0], m[1]));
+
+  std::vector<std::uint32_t> result;
+  std::unordered_map<std::uint32_t, std::uint32_t> shared;  // element -> vertex, where the file has normals
+  for (Triangle triangle : triangles) {
+    if (mirrored) std::swap(triangle[1], triangle[2]);
+    std::array<glm::vec3, 3> p;
+    std::array<glm::vec2, 3> uv;
+    for (std::size_t k = 0; k < 3; ++k) {
+      p[k] = world_position(positions, triangle[k], placement.world, what);
+      uv[k] = atlas_coordinate(atlas, triangle[k], what);
+    }
+    const glm::dvec3 a = glm::dvec3(p[1]) - glm::dvec3(p[0]), b = glm::dvec3(p[2]) - glm::dvec3(p[0]);
+    const glm::dvec3 cross = glm::cross(a, b);
+    const double longest = std::max({glm::dot(a, a), glm::dot(b, b), glm::dot(b - a, b - a)});
+    if (glm::length(cross) <= kFlat * longest) {
+      ++oddities.zero_area;
+      continue;
+    }
+    const glm::dvec2 s = uv[1] - uv[0], t = uv[2] - uv[0];
+    if (s.x * t.y == s.y * t.x) ++oddities.zero_chart;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t i = triangle[k];
+      const auto next = static_cast<std::uint32_t>(scene.vertices.size());
+      if (normals) {
+        const auto [known, is_new] = shared.try_emplace(i, next);
+        result.push_back(known->second);
+        if (!is_new) continue;
+      } else {
+        result.push_back(next);
+      }
+      const glm::dvec3 direction = normals ? cofactors * glm::dvec3(normals->vec3(i)) : cross;
+      const double length = glm::length(direction);
+      const glm::vec2 colour = colours ? colours->vec2(i) : glm::vec2(0);
+      if (!std::isfinite(colour.x) || !std::isfinite(colour.y)) {
+        throw SceneError(what + ": the texture coordinate of vertex " + std::to_string(i) + " is not finite");
+      }
+      // A flattening node can leave a normal without length; the face's own is right then.
+      scene.vertices.push_back(
+          {p[k], glm::normalize(length > 0 ? direction : cross), uv[k], colour, placement.body});
+    }
+  }
+  return result;
+}
+
+}  // namespace lichtveld::scene

@@ -1,0 +1,36 @@
+#include "lichtveld/scene/scene.hpp"
+
+#include <algorithm>
+
+namespace lichtveld::scene {
+
+Sphere bounding_sphere(const Scene& scene, const std::vector<glm::vec3>& offsets) {
+  // Bodies without triangles take no room.
+  std::vector<bool> has_triangles(scene.bodies.size());
+  for (const Surface& surface : scene.surfaces) has_triangles[surface.body] = true;
+  glm::dvec3 low(1e30), high(-1e30);
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    if (!has_triangles[i]) continue;
+    const glm::dvec3 offset = i < offsets.size() ? offsets[i] : glm::vec3(0);
+    low = glm::min(low, glm::dvec3(scene.bodies[i].box.min) + offset);
+    high = glm::max(high, glm::dvec3(scene.bodies[i].box.max) + offset);
+  }
+  return {(low + high) / 2.0, static_cast<float>(glm::length(high - low) / 2)};
+}
+
+std::uint32_t find_body(const Scene& scene, const std::string& node) {
+  std::string names;
+  std::uint32_t found = 0;
+  for (std::size_t i = 1; i < scene.bodies.size(); ++i) {
+    if (scene.bodies[i].node == node) {
+      if (found) throw SceneError(scene.file + ": two movable nodes are called \"" + node + "\"; rename one");
+      found = static_cast<std::uint32_t>(i);
+    }
+    names += (i > 1 ? ", " : "") + scene.bodies[i].node;
+  }
+  if (found) return found;
+  throw SceneError(scene.file + ": no movable node \"" + node + "\"; " +
+                   (names.empty() ? "none is movable (extras.movable)" : "movable are: " + names));
+}
+
+}  // namespace lichtveld::scene

@@ -1,0 +1,72 @@
+// check_atlas(): which texels are valid, and who shares them.
+#include <gmock/gmock.h>
+
+#include "lichtveld/scene/scene.hpp"
+#include "scene_builder.hpp"
+
+namespace lichtveld::scene {
+namespace {
+
+using testing::Chart;
+using testing::SceneBuilder;
+using testing::TempFolder;
+
+constexpr std::array<glm::vec3, 4> kQuad = {glm::vec3{-1, 0, 1}, {1, 0, 1}, {1, 0, -1}, {-1, 0, -1}};
+
+Scene scene_with(const std::vector<std::pair<std::string, Chart>>& quads) {
+  SceneBuilder builder;
+  const int grey = builder.material(glm::vec3(0.5f));
+  for (const auto& [name, chart] : quads) builder.quad(name, kQuad, chart, grey);
+  const TempFolder folder;
+  return load(folder.write("scene.glb", builder.glb()));
+}
+
+std::string atlas_error(const Scene& scene, std::uint32_t size) {
+  try {
+    check_atlas(scene, size);
+  } catch (const SceneError& e) {
+    return e.what();
+  }
+  return "no error";
+}
+
+TEST(SceneAtlas, CountsTexelsWhoseCentreLiesOnAChart) {
+  const Scene scene = scene_with({{"a", {0.25f, 0.25f, 0.5f, 0.75f}}});
+  EXPECT_EQ(check_atlas(scene, 8), 2u * 4u);
+  EXPECT_EQ(check_atlas(scene, 256), 64u * 128u);
+}
+
+TEST(SceneAtlas, ChartsThatTouchDoNotOverlap) {
+  // The border between both runs through texel centres, and so does each quad's diagonal.
+  const float middle = 4.5f / 8;
+  const Scene scene = scene_with({{"a", {0, 0, middle, 1}}, {"b", {middle, 0, 1, 1}}});
+  EXPECT_EQ(check_atlas(scene, 8), 64u);
+  EXPECT_EQ(check_atlas(scene, 1024), 1024u * 1024u);
+}
+
+TEST(SceneAtlas, OverlapsAreNamedAndCounted) {
+  const Scene scene = scene_with(
+      {{"floor", {0, 0, 0.5f, 0.5f}}, {"wall", {0.375f, 0.25f, 1, 1}}, {"lamp", {0.75f, 0.6875f, 1, 1}}});
+  const std::string error = atlas_error(scene, 16);
+  EXPECT_THAT(error, ::testing::HasSubstr("\"floor\" and \"wall\" share 8"));
+  EXPECT_THAT(error, ::testing::HasSubstr("\"lamp\" and \"wall\" share 20"));
+}
+
+TEST(SceneAtlas, AChartOverlapsItself) {
+  SceneBuilder builder;
+  const std::vector<glm::vec2> folded = {{0, 1}, {1, 1}, {1, 0}, {1, 1}};
+  builder.mesh("folded", {kQuad.begin(), kQuad.end()}, folded, {0, 1, 2, 0, 2, 3},
+               builder.material(glm::vec3(1)));
+  const TempFolder folder;
+  EXPECT_THAT(atlas_error(load(folder.write("scene.glb", builder.glb())), 16),
+              ::testing::HasSubstr("\"folded\" and \"folded\""));
+}
+
+TEST(SceneAtlas, NothingCoveredIsAnError) {
+  const Scene scene = scene_with({{"dot", {0.5f, 0.5f, 0.501f, 0.501f}}});
+  EXPECT_THAT(atlas_error(scene, 16), ::testing::HasSubstr("no texel of 16 x 16 lies on a chart"));
+  EXPECT_THAT(atlas_error(scene, 0), ::testing::HasSubstr("outside 1..16384"));
+}
+
+}  // namespace
+}  // namespace lichtveld::scene
