@@ -1,0 +1,28 @@
+// Writes the surface at a texel's centre.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "shared.h"
+
+layout(location = 0) in vec3 world_position;
+layout(location = 1) in vec3 world_normal;
+layout(location = 2) in vec2 colour_coordinate;
+
+layout(push_constant) uniform Push { GeometryConstants constants; };
+layout(binding = 0) uniform sampler2D base_colour;
+
+layout(location = 0) out vec4 out_position;     // xyz [m]; a: 1 on valid texels
+layout(location = 1) out vec4 out_normal;       // shading normal
+layout(location = 2) out vec4 out_face_normal;  // of the triangle itself, on the same side
+layout(location = 3) out vec4 out_albedo;
+layout(location = 4) out vec4 out_emission;  // [W m^-2 sr^-1]
+
+void main() {
+  const vec3 face = normalize(cross(dFdx(world_position), dFdy(world_position)));
+  const vec3 facing = dot(face, world_normal) < 0.0 ? -face : face;
+  const float length_squared = dot(world_normal, world_normal);
+  out_position = vec4(world_position, 1.0);
+  out_normal = vec4(length_squared > 0.0 ? world_normal * inversesqrt(length_squared) : facing, 0.0);
+  out_face_normal = vec4(facing, 0.0);
+  out_albedo = vec4(clamp(constants.base_colour.rgb * texture(base_colour, colour_coordinate).rgb, 0.0, 1.0), 1.0);
+  out_emission = vec4(constants.emission.rgb, 1.0);
+}

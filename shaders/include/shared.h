@@ -1,0 +1,81 @@
+// What C++ and GLSL both know: the constants of each pass. Rows and colours are vec4, so that both sides agree on the
+// layout. Lengths are metres where not said otherwise; PSF space is the scene scaled into the unit sphere.
+#ifndef LICHTVELD_SHARED_H
+#define LICHTVELD_SHARED_H
+
+#ifdef __cplusplus
+#include <cstdint>
+#include <glm/glm.hpp>
+namespace lichtveld::shaders {
+using glm::vec4;
+using uint = std::uint32_t;
+#endif
+
+// Invocations of a compute workgroup, a side, over texels or pixels.
+const uint GROUP = 8;
+
+// Depth of an A-buffer slot that holds nothing. PSF depths lie in [-1, 1].
+const float NO_LAYER = 4.0;
+
+// Marks a texel that neither lies on a chart nor in a gutter.
+const uint NO_TEXEL = 0xffffffffu;
+
+// Gutter around the charts that is filled from their nearest texel [texels]: what bilinear filtering can reach.
+const int GUTTER = 2;
+
+// Bins of the log-luminance histogram, over [2^LOG_LUMINANCE_MIN, 2^LOG_LUMINANCE_MAX): radiance from 1e-6 to 1e6 fits.
+// Bin 0 holds what is darker, black included.
+const uint HISTOGRAM_BINS = 1024;
+const float LOG_LUMINANCE_MIN = -24.0;
+const float LOG_LUMINANCE_MAX = 24.0;
+
+// --sort
+const uint SORT_BITONIC = 0;
+const uint SORT_COMPARE_SWAP = 1;
+const uint SORT_SCAN = 2;
+
+// One direction's orthographic view. A point p [m] has the PSF coordinates dot(row.xyz, p) + row.w, each in [-1, 1]:
+// right and up across the view, along = depth in the direction the light travels.
+struct PsfView {
+  vec4 right, up, along;
+  vec4 direction;  // xyz: unit direction the light travels; w: its solid angle [sr]
+};
+
+struct GeometryConstants {
+  vec4 offset;       // xyz: the body's shift from rest [m]
+  vec4 base_colour;  // linear reflectance
+  vec4 emission;     // radiance Le [W m^-2 sr^-1]
+};
+
+struct EmitConstants {
+  PsfView view;
+  uint size;      // of the PSF raster [pixels]
+  uint capacity;  // layers that the A-buffer holds
+  uint limit;     // layers asked for: pixels with more are counted
+  uint count;     // 1: count layers
+};
+
+struct RoutingConstants {
+  PsfView view;
+  uint size;   // of the PSF raster [pixels]
+  uint count;  // 1: count rays and misses
+};
+
+struct TexelConstants {
+  uint size;  // of the atlas [texels]
+};
+
+struct LayerConstants {
+  uint size, layer;
+};
+
+// What a solve counts, summed over PSFs.
+struct Counters {
+  uint rays, misses;                 // of texels that face the light; those that hit nothing
+  uint overflow_pixels, layers_max;  // PSF pixels with more layers than asked for; most layers in one
+};
+
+#ifdef __cplusplus
+}  // namespace lichtveld::shaders
+#endif
+#endif

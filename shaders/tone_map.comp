@@ -1,0 +1,27 @@
+// Reinhard et al. 2002, "Photographic Tone Reproduction for Digital Images", equations 2 and 4 on luminance; then sRGB.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "shared.h"
+#include "luminance.glsl"
+
+layout(local_size_x = GROUP, local_size_y = GROUP) in;
+layout(binding = 0, rgba32f) uniform readonly image2D radiance;
+layout(binding = 1) readonly buffer Exposure { float average, white; };
+layout(binding = 2, rgba8) uniform writeonly image2D presented;  // sRGB-encoded; black outside charts and gutters
+
+const float KEY = 0.18;  // middle grey, the operator's usual key value
+
+vec3 srgb(vec3 linear) {  // IEC 61966-2-1
+  return mix(12.92 * linear, 1.055 * pow(linear, vec3(1.0 / 2.4)) - 0.055, greaterThan(linear, vec3(0.0031308)));
+}
+
+void main() {
+  const ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
+  if (any(greaterThanEqual(texel, imageSize(radiance)))) return;
+  const vec3 colour = imageLoad(radiance, texel).rgb;
+  const float light = luminance(colour), scale = KEY / average;
+  const float scaled = light * scale, white_scaled = white * scale;
+  const float mapped = scaled * (1.0 + scaled / (white_scaled * white_scaled)) / (1.0 + scaled);
+  const vec3 shown = light > 0.0 ? colour * (mapped / light) : vec3(0.0);
+  imageStore(presented, texel, vec4(srgb(clamp(shown, 0.0, 1.0)), 1.0));
+}

@@ -1,0 +1,36 @@
+#include "convergence.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace lichtveld::lightfield {
+
+Convergence::Convergence(const gpu::Device& device, const LightMap& map)
+    : before_(std::size_t{map.size} * map.size, glm::vec4(0)) {
+  const auto positions = gpu::download<glm::vec4>(device, map.position);
+  const auto albedos = gpu::download<glm::vec4>(device, map.albedo);
+  for (std::size_t texel = 0; texel < positions.size(); ++texel) {
+    if (positions[texel].a == 0) continue;
+    ++texels_valid_;
+    albedo_max_ = std::max({albedo_max_, albedos[texel].r, albedos[texel].g, albedos[texel].b});
+  }
+}
+
+double Convergence::measure(const gpu::Device& device, const LightMap& map) {
+  auto now = gpu::download<glm::vec4>(device, map.total_irradiance);
+  double change = 0, sum = 0;
+  for (std::size_t texel = 0; texel < now.size(); ++texel) {
+    if (now[texel].a == 0) continue;
+    for (int channel = 0; channel < 3; ++channel) {
+      change = std::max(change, std::abs(double{now[texel][channel]} - before_[texel][channel]));
+      sum += now[texel][channel];
+    }
+  }
+  before_ = std::move(now);
+  if (change == 0) return 0;
+  if (albedo_max_ >= 1) return std::numeric_limits<double>::infinity();
+  return change / (1 - albedo_max_) / (sum / (3.0 * texels_valid_));
+}
+
+}  // namespace lichtveld::lightfield

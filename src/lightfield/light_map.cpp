@@ -1,0 +1,68 @@
+#include "light_map.hpp"
+
+#include <array>
+
+#include "shared.h"
+
+namespace lichtveld::lightfield {
+
+namespace {
+
+using Usage = vk::ImageUsageFlagBits;
+
+gpu::Image atlas_image(const gpu::Device& device, const char* name, std::uint32_t size, vk::Format format,
+                       vk::ImageUsageFlags usage) {
+  return {device, std::string("lightfield/") + name, {.width = size, .height = size}, format,
+          usage | Usage::eStorage | Usage::eTransferSrc | Usage::eTransferDst};
+}
+
+constexpr auto rgba32f = vk::Format::eR32G32B32A32Sfloat;
+
+std::vector<gpu::Image> upload_textures(const gpu::Device& device, const scene::Scene& scene) {
+  std::vector<gpu::Image> images;
+  for (const auto& texture : scene.textures)
+    images.push_back(gpu::upload_srgb(device, "scene/texture " + std::to_string(images.size()), texture.width,
+                                      texture.height, texture.rgba));
+  constexpr std::array<std::uint8_t, 4> white = {255, 255, 255, 255};
+  images.push_back(gpu::upload_srgb(device, "scene/white", 1, 1, white));
+  return images;
+}
+
+}  // namespace
+
+LightMap::LightMap(const gpu::Device& device, std::uint32_t size)
+    : size(size),
+      groups((size + shaders::GROUP - 1) / shaders::GROUP),
+      position(atlas_image(device, "position", size, rgba32f, Usage::eColorAttachment)),
+      normal(atlas_image(device, "normal", size, rgba32f, Usage::eColorAttachment)),
+      face_normal(atlas_image(device, "face_normal", size, rgba32f, Usage::eColorAttachment)),
+      albedo(atlas_image(device, "albedo", size, rgba32f, Usage::eColorAttachment)),
+      emission(atlas_image(device, "emission", size, rgba32f, Usage::eColorAttachment)),
+      source(atlas_image(device, "source", size, vk::Format::eR32Uint, {})),
+      psf_irradiance(atlas_image(device, "psf_irradiance", size, rgba32f, {})),
+      bounce_irradiance(atlas_image(device, "bounce_irradiance", size, rgba32f, {})),
+      total_irradiance(atlas_image(device, "total_irradiance", size, rgba32f, {})),
+      radiance(atlas_image(device, "radiance", size, rgba32f, Usage::eSampled)),
+      presented(atlas_image(device, "presented", size, vk::Format::eR8G8B8A8Unorm, {})) {}
+
+Geometry::Geometry(const gpu::Device& device, const scene::Scene& scene)
+    : scene(scene),
+      vertices(gpu::upload<scene::Vertex>(device, "scene/vertices", scene.vertices, vk::BufferUsageFlagBits::eVertexBuffer)),
+      indices(gpu::upload<std::uint32_t>(device, "scene/indices", scene.indices, vk::BufferUsageFlagBits::eIndexBuffer)),
+      offsets(device, "scene/offsets", scene.bodies.size() * sizeof(glm::vec4), vk::BufferUsageFlagBits::eStorageBuffer,
+              gpu::Memory::host),
+      textures(upload_textures(device, scene)),
+      sampler(device.handle(), vk::SamplerCreateInfo{.magFilter = vk::Filter::eLinear,
+                                                     .minFilter = vk::Filter::eLinear,
+                                                     .addressModeU = vk::SamplerAddressMode::eRepeat,
+                                                     .addressModeV = vk::SamplerAddressMode::eRepeat}) {
+  device.name(sampler, "scene/sampler");
+  place(std::vector<glm::vec3>(scene.bodies.size(), glm::vec3(0)));
+}
+
+void Geometry::place(const std::vector<glm::vec3>& shifts) {
+  const auto places = offsets.as<glm::vec4>();
+  for (std::size_t body = 0; body < shifts.size(); ++body) places[body] = glm::vec4(shifts[body], 0);
+}
+
+}  // namespace lichtveld::lightfield

@@ -1,0 +1,238 @@
+#include "lichtveld/lightfield/thesis.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+
+#include "blend.hpp"
+#include "brdf.hpp"
+#include "convergence.hpp"
+#include "emit_radiance.hpp"
+#include "geometry_texture.hpp"
+#include "stencil_routing.hpp"
+#include "tone_map.hpp"
+
+namespace lichtveld::lightfield {
+
+namespace {
+
+// PSFs a submission: bounds its queries and how long a GPU is held at a stretch.
+constexpr std::size_t psfs_a_frame = 128;
+// Where a bound of `auto` cannot be met (an albedo of 1 bounds nothing), it ends here.
+constexpr std::uint32_t most_bounces = 256;
+// `auto` ends when the bound on what is missing falls below this share of the mean.
+constexpr double converged = 1e-3;
+constexpr std::uint32_t most_layers = 128;  // stencil counters have 8 bits
+
+void check(const Settings& settings, const gpu::Device& device) {
+  const auto largest = std::min(4096u, device.summary().max_image_size);
+  if (settings.size < 16 || settings.size > largest)
+    throw std::invalid_argument("a size of " + std::to_string(settings.size) + " texels: it must lie in 16.." +
+                                std::to_string(largest));
+  if (settings.layers < 1 || settings.layers > most_layers)
+    throw std::invalid_argument(std::to_string(settings.layers) + " layers: there must be 1.." +
+                                std::to_string(most_layers));
+  if (settings.bounces == 0u) throw std::invalid_argument("0 bounces: 1 is direct light alone, 2 adds one reflection");
+}
+
+// The sort networks want a power of two, and every sample of a routed pass is used.
+std::uint32_t capacity_for(std::uint32_t layers, const Settings& settings, const gpu::Device& device) {
+  const auto capacity = std::bit_ceil(layers);
+  return settings.abuffer == ABuffer::stencil ? std::max(capacity, device.summary().samples) : capacity;
+}
+
+// Everything that depends on how many layers the A-buffer holds.
+struct Layered {
+  Layered(const gpu::Device& device, const Settings& settings, std::uint32_t capacity)
+      : store(device, settings, capacity), emit(device, store), route(device, store, settings.sort), show(device, store) {}
+  LayerStore store;
+  EmitRadiance emit;
+  StencilRouting route;
+  ShowLayer show;
+};
+
+}  // namespace
+
+struct Thesis::Parts {
+  Parts(const gpu::Device& device, const scene::Scene& scene, const Settings& settings)
+      : device(device),
+        settings(settings),
+        psfs(directions(settings.psf)),
+        geometry(device, scene),
+        map(device, settings.size),
+        layered(std::make_unique<Layered>(device, settings, capacity_for(settings.layers, settings, device))),
+        geometry_texture(device),
+        blend(device),
+        brdf(device),
+        tone_map(device),
+        counters(device, "lightfield/counters", sizeof(shaders::Counters),
+                 vk::BufferUsageFlagBits::eStorageBuffer | vk::BufferUsageFlagBits::eTransferDst, gpu::Memory::host) {}
+
+  const gpu::Device& device;
+  const Settings settings;
+  const std::vector<Direction> psfs;
+  gpu::PassTimes times;
+  Geometry geometry;
+  LightMap map;
+  std::unique_ptr<Layered> layered;
+  GeometryTexture geometry_texture;
+  Blend blend;
+  Brdf brdf;
+  ToneMap tone_map;
+  gpu::Buffer counters;
+  scene::Sphere sphere;
+
+  void begin(const std::vector<glm::vec3>& offsets);
+  void render_bounce(bool count, Solution& solution, const StageObserver& observer, std::uint32_t observed);
+  void render_psfs(std::size_t first, std::size_t end, bool count, Solution& solution);
+  void end_bounce();
+  void present();
+  bool widen(const Solution& solution);
+  bool done(const Solution& solution) const;
+  void show_stages(const StageObserver& observer);
+  void show_result(const StageObserver& observer);
+};
+
+Thesis::Thesis(const gpu::Device& device, const scene::Scene& scene, const Settings& settings) {
+  check(settings, device);
+  parts_ = std::make_unique<Parts>(device, scene, settings);
+}
+
+Thesis::~Thesis() = default;
+
+// Algorithm 1.
+Solution Thesis::solve(const std::vector<glm::vec3>& offsets, const StageObserver& observer, std::uint32_t observed) {
+  Parts& parts = *parts_;
+  Solution solution;
+  parts.begin(offsets);  // geometry_texture, and L = Le
+  Convergence convergence(parts.device, parts.map);
+  solution.texels_valid = convergence.texels_valid();
+  while (!parts.done(solution)) {
+    const bool first = solution.bounces == 0;
+    parts.render_bounce(first, solution, observer, observed);  // for each PSF: emit_radiance, stencil_routing, blend
+    if (first && parts.widen(solution)) continue;              // layers would have been lost: again, with more
+    parts.end_bounce();                                        // blend into the total; brdf
+    ++solution.bounces;
+    solution.residual = convergence.measure(parts.device, parts.map);
+  }
+  parts.present();  // tone_map
+  if (observer) parts.show_result(observer);
+  return solution;
+}
+
+std::vector<glm::vec4> Thesis::irradiance() {
+  return gpu::download<glm::vec4>(parts_->device, parts_->map.total_irradiance);
+}
+
+std::vector<std::uint8_t> Thesis::presented() {
+  const auto pixels = gpu::download<std::array<std::uint8_t, 4>>(parts_->device, parts_->map.presented);
+  return {pixels.front().data(), pixels.front().data() + 4 * pixels.size()};
+}
+
+const gpu::PassTimes& Thesis::times() const { return parts_->times; }
+
+bool Thesis::Parts::done(const Solution& solution) const {
+  if (settings.bounces) return solution.bounces >= *settings.bounces;
+  if (solution.bounces < most_bounces) return solution.bounces > 0 && solution.residual < converged;
+  spdlog::warn("still {:.2g} of the mean may be missing after {} bounces: an albedo near 1 bounds nothing", solution.residual,
+               solution.bounces);
+  return true;
+}
+
+void Thesis::Parts::begin(const std::vector<glm::vec3>& offsets) {
+  geometry.place(offsets);
+  sphere = scene::bounding_sphere(geometry.scene, offsets);
+  gpu::Frame frame(device, times);
+  frame.clear("blend", map.total_irradiance, {});
+  frame.clear("blend", map.bounce_irradiance, {});
+  geometry_texture.record(frame, geometry, map);
+  brdf.record(frame, map);
+  frame.submit_and_wait();
+}
+
+void Thesis::Parts::render_bounce(bool count, Solution& solution, const StageObserver& observer,
+                                  std::uint32_t observed) {
+  if (count) solution.overflow_pixels = solution.rays = solution.misses = 0;
+  const bool observing = count && observer && observed < psfs.size();
+  for (std::size_t first = 0; first < psfs.size();) {
+    std::size_t end = std::min(first + psfs_a_frame, psfs.size());
+    if (observing && first <= observed) end = std::min<std::size_t>(end, observed + 1);
+    render_psfs(first, end, count, solution);
+    if (observing && end == observed + 1) show_stages(observer);
+    first = end;
+  }
+}
+
+void Thesis::Parts::render_psfs(std::size_t first, std::size_t end, bool count, Solution& solution) {
+  auto& counted = counters.as<shaders::Counters>().front();
+  counted = {.rays = 0, .misses = 0, .overflow_pixels = 0, .layers_max = solution.depth_layers_max};
+  gpu::Frame frame(device, times);
+  for (std::size_t psf = first; psf < end; ++psf) {
+    const auto view = psf_view(psfs[psf], sphere);
+    layered->emit.record(frame, view, geometry, map, layered->store, settings.layers, count, counters);
+    layered->route.record(frame, view, layered->store, map, count, counters);
+    blend.psf_into_bounce(frame, map);
+  }
+  frame.to_host(counters);
+  frame.submit_and_wait();
+  solution.rays += counted.rays;
+  solution.misses += counted.misses;
+  solution.overflow_pixels += counted.overflow_pixels;
+  solution.depth_layers_max = counted.layers_max;
+}
+
+// Makes room for all the layers there are. False if there was enough.
+bool Thesis::Parts::widen(const Solution& solution) {
+  const auto needed = solution.depth_layers_max;
+  if (needed <= layered->store.capacity) return false;
+  if (needed > most_layers)
+    throw std::runtime_error("a PSF pixel has " + std::to_string(needed) + " layers, more than the " +
+                             std::to_string(most_layers) + " that can be kept; try fewer surfaces behind each other");
+  spdlog::warn("{} PSF pixels have more than {} layers, up to {}: room is made for all of them", solution.overflow_pixels,
+               settings.layers, needed);
+  layered.reset();  // first, so that both need not fit
+  layered = std::make_unique<Layered>(device, settings, capacity_for(needed, settings, device));
+  gpu::Frame frame(device, times);
+  frame.clear("blend", map.bounce_irradiance, {});
+  frame.submit_and_wait();
+  return true;
+}
+
+void Thesis::Parts::end_bounce() {
+  gpu::Frame frame(device, times);
+  blend.bounce_into_total(frame, map);
+  brdf.record(frame, map);
+  frame.submit_and_wait();
+}
+
+void Thesis::Parts::present() {
+  gpu::Frame frame(device, times);
+  tone_map.record(frame, map);
+  frame.submit_and_wait();
+}
+
+void Thesis::Parts::show_stages(const StageObserver& observer) {
+  for (std::uint32_t layer = 0; layer < layered->store.capacity; ++layer) {
+    const gpu::Image shown(device, "lightfield/shown_layer", {.width = settings.size, .height = settings.size},
+                           vk::Format::eR32G32B32A32Sfloat,
+                           vk::ImageUsageFlagBits::eStorage | vk::ImageUsageFlagBits::eTransferSrc);
+    gpu::Frame frame(device, times);
+    layered->show.record(frame, layered->store, layer, shown);
+    frame.submit_and_wait();
+    observer("emit_radiance.layer" + std::to_string(layer), shown);
+  }
+  observer("stencil_routing.psf_irradiance", map.psf_irradiance);
+}
+
+void Thesis::Parts::show_result(const StageObserver& observer) {
+  observer("geometry_texture.position", map.position);
+  observer("geometry_texture.normal", map.normal);
+  observer("geometry_texture.albedo", map.albedo);
+  observer("geometry_texture.emission", map.emission);
+  observer("blend.total_irradiance", map.total_irradiance);
+  observer("brdf.radiance", map.radiance);
+}
+
+}  // namespace lichtveld::lightfield
