@@ -1,0 +1,44 @@
+// The data channel's protocol, version 1, as bytes: what a message looks like, nothing about sending it.
+//
+//   server -> client   binary  one PNG in chunks of at most map_chunk bytes, in order
+//                      text    PNG_TRANSFER_COMPLETE after the last chunk
+//                      text    x1!y1/x2!y2, the cubes' places [m]; may come between two chunks
+//   client -> server   text    up | down | left | right
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "lichtveld/stream/server.hpp"
+
+namespace lichtveld::stream {
+
+// The channel's label; its sub-protocol is empty in version 1.
+inline constexpr std::string_view channel_label = "lichtveld";
+
+// Bytes of PNG in one message. 16 KiB is what every WebRTC implementation takes; one message blocks those
+// behind it, so a places message never waits for more than this in our own queue.
+inline constexpr std::size_t map_chunk = 16 * 1024;
+
+inline constexpr std::string_view map_complete = "PNG_TRANSFER_COMPLETE";
+
+// The longest message that a client may send [bytes]; the longest that means something has five.
+inline constexpr std::size_t max_client_message = 64;
+
+// The chunk of `png` that starts at `offset` (at most map_chunk bytes; empty at or past the end).
+std::span<const std::uint8_t> chunk_at(std::span<const std::uint8_t> png, std::size_t offset);
+
+// "x1!y1/x2!y2": plain decimals (no exponent, a point in every locale), the shortest that read back as the same
+// float; one entry a cube, in order; empty without cubes, and then there is nothing to send. Throws
+// std::invalid_argument for a place that is not finite.
+std::string format_places(const std::vector<Place>& places);
+
+// Exactly `up`, `down`, `left` or `right`; nothing for anything else.
+std::optional<Move> parse_move(std::string_view text);
+
+}  // namespace lichtveld::stream

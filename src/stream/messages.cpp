@@ -1,0 +1,79 @@
+#include "messages.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include "limits.hpp"
+
+namespace lichtveld::stream {
+
+namespace {
+
+using nlohmann::json;
+
+// A string member of 1 to `limit` bytes (0 too if `empty`).
+std::optional<std::string> text_of(const json& message, const char* name, std::size_t limit,
+                                   bool empty = false) {
+  const auto member = message.find(name);
+  if (member == message.end() || !member->is_string()) return std::nullopt;
+  const auto& text = member->get_ref<const std::string&>();
+  if (text.size() > limit || (text.empty() && !empty)) return std::nullopt;
+  return text;
+}
+
+std::optional<std::string> id_of(const json& message) {
+  const auto member = message.find("id");
+  if (member == message.end() || !(member->is_string() || member->is_number_integer())) return std::nullopt;
+  std::string id = member->dump();
+  if (id.size() > limits::peer_id) return std::nullopt;
+  return id;
+}
+
+// Replaces what is not UTF-8 rather than throw: the text comes from the WebRTC library.
+std::string dump(const json& message) {
+  return message.dump(-1, ' ', false, json::error_handler_t::replace);
+}
+
+}  // namespace
+
+std::optional<Signal> parse_signal(std::string_view text) {
+  if (text.size() > limits::signaling_message) return std::nullopt;
+  const json message = json::parse(text, nullptr, false);
+  if (!message.is_object()) return std::nullopt;
+  const auto type = text_of(message, "type", 16);
+  const auto id = id_of(message);
+  if (!type || !id) return std::nullopt;
+
+  if (*type == "welcome") return Signal{Signal::Type::welcome, *id, {}, {}};
+  if (*type == "gone") return Signal{Signal::Type::gone, *id, {}, {}};
+  if (*type == "offer") {
+    auto sdp = text_of(message, "description", limits::description);
+    if (!sdp) return std::nullopt;
+    return Signal{Signal::Type::offer, *id, std::move(*sdp), {}};
+  }
+  if (*type == "candidate") {
+    // An empty line says that the client has no more candidates.
+    auto line = text_of(message, "candidate", limits::candidate, true);
+    auto mid = text_of(message, "mid", limits::mid);
+    if (!line || !mid) return std::nullopt;
+    return Signal{Signal::Type::candidate, *id, std::move(*line), std::move(*mid)};
+  }
+  return std::nullopt;
+}
+
+std::string answer_signal(const std::string& id, const std::string& sdp) {
+  return dump({{"id", json::parse(id)}, {"type", "answer"}, {"description", sdp}});
+}
+
+std::string candidate_signal(const std::string& id, const std::string& line, const std::string& mid) {
+  return dump({{"id", json::parse(id)}, {"type", "candidate"}, {"candidate", line}, {"mid", mid}});
+}
+
+std::string role_signal(const std::string& id, const Role& role) {
+  return dump({{"id", json::parse(id)},
+               {"type", "role"},
+               {"cube", role.cube},
+               {"players", role.players},
+               {"watchers", role.watchers}});
+}
+
+}  // namespace lichtveld::stream

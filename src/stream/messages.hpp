@@ -1,0 +1,37 @@
+// Signaling's messages as JSON. `id` names the other peer; the relay rewrites it, so what a server sends to
+// {"id":7} arrives at client 7 with the server's id. Written by hand into the relay's and the browser's code
+// too:
+//
+//   relay  -> server   {"type":"welcome","id":OWN}                            greeting
+//   client -> server   {"id":C,"type":"offer","description":SDP}
+//   client -> server   {"id":C,"type":"candidate","candidate":LINE,"mid":"0"}
+//   relay  -> server   {"id":C,"type":"gone"}                                 the client's socket has closed
+//   server -> client   {"id":C,"type":"answer","description":SDP}
+//   server -> client   {"id":C,"type":"candidate","candidate":LINE,"mid":"0"}
+//   server -> client   {"id":C,"type":"role","cube":0|1|2,"players":N,"watchers":M}   0 = watching
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "lichtveld/stream/session.hpp"
+
+namespace lichtveld::stream {
+
+struct Signal {
+  enum class Type { welcome, offer, candidate, gone };
+  Type type;
+  std::string id;    // a string or a whole number, kept as the JSON text that it came as
+  std::string body;  // the SDP, or the candidate's line
+  std::string mid;
+};
+
+// Nothing for whatever is not one of the messages above in full and within the limits (limits.hpp).
+std::optional<Signal> parse_signal(std::string_view text);
+
+std::string answer_signal(const std::string& id, const std::string& sdp);
+std::string candidate_signal(const std::string& id, const std::string& line, const std::string& mid);
+std::string role_signal(const std::string& id, const Role& role);
+
+}  // namespace lichtveld::stream

@@ -1,0 +1,166 @@
+#include "room.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <boost/asio/post.hpp>
+#include <stdexcept>
+
+#include "lichtveld/stream/protocol.hpp"
+
+namespace lichtveld::stream {
+
+namespace asio = boost::asio;
+
+Server::Room::Room(ServerOptions options)
+    : options_(std::move(options)),
+      session_(options_.places, options_.mover),
+      signaling_(io_, {SignalingUrl::parse(options_.signaling), options_.token, options_.scene_hash},
+                 {.connected = [this] { count([](auto& s) { s.signaling_connected = true; }); },
+                  .lost = [this] { signaling_lost(); },
+                  .message = [this](std::string_view text) { signal(text); },
+                  .refused =
+                      [this](std::string why) {
+                        const std::lock_guard lock(mutex_);
+                        refused_ = std::move(why);
+                      }}) {
+  tick();
+  thread_ = std::jthread([this] { run(); });
+}
+
+Server::Room::~Room() {
+  io_.stop();
+  thread_.join();
+  // Before the rest, as they post to the io_context until they are closed.
+  guests_.clear();
+}
+
+void Server::Room::run() {
+  while (!io_.stopped()) {
+    try {
+      io_.run();
+    } catch (const std::exception& error) {
+      // A mover that throws, or memory that has run out: one event is lost, the room goes on.
+      spdlog::error("the room's thread: {}", error.what());
+    }
+  }
+}
+
+void Server::Room::publish(std::vector<std::uint8_t> png, const std::vector<Place>& places) {
+  if (png.empty()) throw std::invalid_argument("the published map has no bytes");
+  auto map = std::make_shared<const Map>(Map{std::move(png), format_places(places)});
+  asio::post(io_, [this, map = std::move(map)] {
+    newest_ = map;
+    for (auto& [number, guest] : guests_) {
+      if (!guest.peer->is_open()) continue;
+      guest.peer->send_map(map);
+      collect(*guest.peer);
+    }
+  });
+}
+
+ServerStatistics Server::Room::statistics() const {
+  const std::lock_guard lock(mutex_);
+  return statistics_;
+}
+
+std::string Server::Room::refused() const {
+  const std::lock_guard lock(mutex_);
+  return refused_;
+}
+
+void Server::Room::tick() {
+  const auto now = std::chrono::steady_clock::now();
+  const std::string places = format_places(session_.places());
+  for (auto it = guests_.begin(); it != guests_.end();) {
+    const auto guest = it++;
+    Peer& peer = *guest->second.peer;
+    if (!peer.is_open()) {
+      if (now - peer.created() > limits::open_time) drop(guest, "its channel did not open in time");
+      continue;
+    }
+    peer.send_places(places);
+    collect(peer);
+    const auto patience = guest->second.gone ? limits::stall_time_when_gone : limits::stall_time;
+    if (now - peer.outbox().last_empty() > patience) drop(guest, "it takes nothing any more");
+  }
+  tick_.expires_after(limits::places_interval);
+  tick_.async_wait([this](boost::system::error_code error) {
+    if (!error) tick();
+  });
+}
+
+void Server::Room::on_open(Peer& peer) {
+  session_.join(peer.number());
+  spdlog::info("peer {} joined, {} in the room", peer.number(), session_.size());
+  peer.send_places(format_places(session_.places()));
+  if (newest_) peer.send_map(newest_);
+  collect(peer);
+  tell_roles();
+}
+
+void Server::Room::on_closed(Peer& peer) {
+  const auto guest = guests_.find(peer.number());
+  if (guest != guests_.end()) drop(guest, "it closed");
+}
+
+void Server::Room::on_text(Peer& peer, std::string_view text) {
+  const auto guest = guests_.find(peer.number());
+  if (guest == guests_.end()) return;
+  const auto move = parse_move(text);
+  if (!move) return on_refused(peer, "a text that is no move");
+  if (!guest->second.moves.take()) return count([](auto& s) { ++s.messages_refused; });
+  const MoveResult result = session_.move(peer.number(), *move);
+  count([&](auto& s) { ++(result == MoveResult::moved ? s.moves : s.moves_blocked); });
+  if (result == MoveResult::moved && options_.places_changed) options_.places_changed(session_.places());
+}
+
+void Server::Room::on_refused(Peer& peer, std::string_view why) {
+  refuse("peer " + std::to_string(peer.number()), why);
+  const auto guest = guests_.find(peer.number());
+  if (guest != guests_.end() && ++guest->second.refusals > limits::refusals)
+    drop(guest, "too many refused messages");
+}
+
+void Server::Room::refuse(std::string_view who, std::string_view why) {
+  count([](auto& s) { ++s.messages_refused; });
+  if (log_.take()) spdlog::warn("refused from {}: {}", who, why);
+}
+
+void Server::Room::drop(Guests::iterator guest, std::string_view why) {
+  const PeerNumber number = guest->first;
+  spdlog::info("peer {} left: {}", number, why);
+  collect(*guest->second.peer);
+  guest->second.peer->mute();
+  // Later, as this may be called from within the peer.
+  asio::post(io_, [peer = std::move(guest->second.peer)] {});
+  guests_.erase(guest);
+  session_.leave(number);
+  tell_roles();
+}
+
+void Server::Room::tell_roles() {
+  count([&](auto& s) {
+    s.peers = static_cast<std::uint32_t>(session_.size());
+    s.players = static_cast<std::uint32_t>(session_.players());
+  });
+  for (auto& [number, guest] : guests_) {
+    if (!guest.peer->is_open() || guest.signaling_id.empty()) continue;
+    const Role role = session_.role(number);
+    if (guest.told == role) continue;
+    guest.told = role;
+    signaling_.send(role_signal(guest.signaling_id, role));
+  }
+}
+
+void Server::Room::collect(Peer& peer) {
+  const SentCounts sent = peer.take_counts();
+  const std::size_t dropped = peer.take_dropped();
+  count([&](auto& s) {
+    s.maps_sent += sent.maps;
+    s.maps_skipped += sent.skipped;
+    s.bytes_sent += sent.bytes;
+    s.messages_refused += dropped;
+  });
+}
+
+}  // namespace lichtveld::stream

@@ -1,0 +1,48 @@
+#include "lichtveld/stream/server.hpp"
+
+#include <algorithm>
+#include <boost/asio/ip/address.hpp>
+#include <stdexcept>
+
+#include "room.hpp"
+
+namespace lichtveld::stream {
+
+namespace {
+
+// Checks what Room does not.
+ServerOptions checked(ServerOptions options) {
+  if (options.token.empty()) throw std::invalid_argument("the signaling token is empty; is its file?");
+  if (std::any_of(options.token.begin(), options.token.end(), [](char c) { return c <= ' ' || c > '~'; }))
+    throw std::invalid_argument("the signaling token has other characters than printable ASCII without spaces");
+  const auto hex = [](char c) { return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f'); };
+  if (options.scene_hash.size() != 64 ||
+      !std::all_of(options.scene_hash.begin(), options.scene_hash.end(), hex))
+    throw std::invalid_argument("the scene's hash '" + options.scene_hash +
+                                "' is not 64 lower-case hex digits");
+  if (!options.bind_address.empty()) {
+    boost::system::error_code error;
+    const auto address = boost::asio::ip::make_address(options.bind_address, error);
+    if (error)
+      throw std::invalid_argument("cannot bind WebRTC to '" + options.bind_address + "': give an IP address");
+    // The WebRTC library would offer the wildcard itself to clients.
+    if (address.is_unspecified()) options.bind_address.clear();
+  }
+  return options;
+}
+
+}  // namespace
+
+Server::Server(ServerOptions options) : room_(std::make_unique<Room>(checked(std::move(options)))) {}
+Server::~Server() = default;
+void Server::publish(std::vector<std::uint8_t> png, std::vector<Place> places) {
+  room_->publish(std::move(png), places);
+}
+ServerStatistics Server::statistics() const {
+  return room_->statistics();
+}
+std::string Server::refused() const {
+  return room_->refused();
+}
+
+}  // namespace lichtveld::stream

@@ -1,0 +1,72 @@
+// The line to the signaling server: connects, proves itself with the token, comes back with back-off.
+// Everything here runs on the io_context's thread, which must be one thread.
+#pragma once
+
+// Boost 1.74's awaitable.hpp uses std::exchange without including this; it has to come first.
+#include <utility>
+
+#include <boost/asio/awaitable.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/beast/core/tcp_stream.hpp>
+#include <boost/beast/websocket/stream.hpp>
+#include <chrono>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <random>
+#include <string>
+#include <string_view>
+
+namespace lichtveld::stream {
+
+struct SignalingUrl {
+  std::string host, port, target;
+
+  // ws://HOST[:PORT][/PATH]; an IPv6 address stands in brackets; the port is 80 where none is given. Throws
+  // std::invalid_argument.
+  static SignalingUrl parse(std::string_view url);
+};
+
+class Signaling {
+ public:
+  struct Options {
+    SignalingUrl url;
+    std::string token;       // printable ASCII without spaces
+    std::string scene_hash;  // hex
+  };
+  struct Events {
+    std::function<void()> connected, lost;
+    std::function<void(std::string_view text)> message;
+    std::function<void(std::string why)> refused;  // the token is wrong: no further try is made
+  };
+
+  // Starts at once. The object must live until the io_context has stopped running.
+  Signaling(boost::asio::io_context& io, Options options, Events events);
+  Signaling(const Signaling&) = delete;
+  Signaling& operator=(const Signaling&) = delete;
+
+  // Dropped while there is no connection: what it says is about clients whom signaling has forgotten by then.
+  void send(std::string text);
+
+ private:
+  using Socket = boost::beast::websocket::stream<boost::beast::tcp_stream>;
+  enum class Ending { lost, token_refused, room_taken };
+
+  boost::asio::awaitable<void> stay_connected();
+  boost::asio::awaitable<Ending> connect_once();
+  boost::asio::awaitable<void> receive(std::shared_ptr<Socket> socket);
+  void write_next();
+  std::chrono::milliseconds pause_after(Ending ending);
+
+  boost::asio::io_context& io_;
+  Options options_;
+  Events events_;
+  boost::asio::steady_timer retry_;
+  std::shared_ptr<Socket> socket_;  // set while connected
+  std::deque<std::string> queue_;   // its front is being written
+  unsigned failures_ = 0;           // in a row
+  std::minstd_rand random_{std::random_device{}()};
+};
+
+}  // namespace lichtveld::stream

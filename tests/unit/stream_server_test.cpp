@@ -1,0 +1,140 @@
+// Joining, maps, roles and moves over real connections.
+#include "stream_room.hpp"
+
+namespace lichtveld::stream::test {
+namespace {
+
+// The suite ends with a look at what is left: the library must be able to end all its threads.
+class Cleanup : public testing::Environment {
+  void TearDown() override {
+    EXPECT_EQ(rtc::Cleanup().wait_for(10s), std::future_status::ready) << "a connection is still alive";
+  }
+};
+const auto* const cleanup = testing::AddGlobalTestEnvironment(new Cleanup);
+
+TEST_F(RoomTest, JoinerGetsPlacesAtOnceAndTheWholeMap) {
+  start();
+  const auto first = map_bytes(100'001, 1), second = map_bytes(16 * 1024, 2);
+  server->publish(first, rest);
+  Client client(*relay);
+  ASSERT_TRUE(client.wait_maps(1));
+  EXPECT_EQ(client.state().maps[0], as_binary(first));
+  EXPECT_EQ(client.state().texts.at(0), rest_text);
+  EXPECT_GE(client.state().texts_before_first_chunk, 1u) << "the places come before the map";
+  EXPECT_EQ(relay->scene(), std::string(64, 'a'));
+
+  server->publish(second, {{0.125f, -1}, {0.5f, 0.25f}});
+  ASSERT_TRUE(client.wait_maps(2));
+  EXPECT_EQ(client.state().maps[1], as_binary(second));
+  EXPECT_EQ(client.state().texts.back(), "0.125!-1/0.5!0.25") << "the places that this map shows";
+  const auto statistics = server->statistics();
+  EXPECT_EQ(statistics.maps_sent, 2u);
+  EXPECT_EQ(statistics.maps_skipped, 0u);
+  EXPECT_GE(statistics.bytes_sent, first.size() + second.size());
+}
+
+TEST_F(RoomTest, PlacesComeWithoutMapsAtLeastOnceASecond) {
+  start();
+  Client client(*relay);
+  ASSERT_TRUE(client.wait([](const auto& s) { return s.texts.size() >= 1; }));
+  const auto before = client.state().texts.size();
+  std::this_thread::sleep_for(2100ms);
+  EXPECT_GE(client.state().texts.size(), before + 2);
+  EXPECT_THAT(client.state().texts, testing::Each(rest_text));
+}
+
+TEST_F(RoomTest, TwoPlayAndTheThirdInherits) {
+  start();
+  auto first = std::make_unique<Client>(*relay);
+  ASSERT_TRUE(first->wait_cube(1));
+  Client second(*relay);
+  ASSERT_TRUE(second.wait_cube(2));
+  Client third(*relay);
+  ASSERT_TRUE(third.wait([](const auto& s) { return s.role.is_object(); }));
+  EXPECT_EQ(
+      third.state().role,
+      (nlohmann::json{{"id", third.id()}, {"type", "role"}, {"cube", 0}, {"players", 2}, {"watchers", 1}}));
+  ASSERT_TRUE(first->wait([](const auto& s) { return s.role.at("watchers") == 1; }))
+      << "everyone hears of a newcomer";
+
+  first->channel().send(std::string("right"));
+  second.channel().send(std::string("up"));
+  third.channel().send(std::string("left"));
+  ASSERT_TRUE(
+      eventually([&] { return server->statistics().moves == 2 && server->statistics().moves_blocked == 1; }));
+  EXPECT_EQ(last_change(), (std::vector<Place>{{-0.25f, 0}, {0.5f, 0.5f}}));
+
+  for (int i = 0; i < 4; ++i) second.channel().send(std::string("right"));  // the wall is two steps away
+  ASSERT_TRUE(eventually([&] { return server->statistics().moves_blocked == 3; }));
+  EXPECT_EQ(last_change()[1], (Place{1, 0.5f}));
+
+  EXPECT_EQ(server->statistics().players, 2u);
+  EXPECT_EQ(server->statistics().peers, 3u);
+  first.reset();
+  ASSERT_TRUE(third.wait_cube(1));
+  EXPECT_EQ(second.state().role.at("cube"), 2);
+  third.channel().send(std::string("left"));
+  ASSERT_TRUE(eventually([&] { return last_change()[0] == Place{-0.5f, 0}; }));
+  EXPECT_EQ(server->statistics().peers, 2u);
+}
+
+TEST_F(RoomTest, SlowClientSkipsToTheNewestAndNobodyElseNotices) {
+  start();
+  Client slow(*relay, {.through_link = true}), fast(*relay);
+  ASSERT_TRUE(slow.wait_open());
+  ASSERT_TRUE(fast.wait_open());
+  slow.link().cut = true;
+  constexpr std::size_t count = 12;
+  for (unsigned i = 1; i <= count; ++i) {
+    server->publish(map_bytes(200'000, i), rest);
+    ASSERT_TRUE(fast.wait_maps(i)) << "map " << i;
+  }
+  slow.link().cut = false;
+  ASSERT_TRUE(slow.wait(
+      [](const auto& s) { return !s.maps.empty() && s.maps.back() == as_binary(map_bytes(200'000, count)); },
+      10s));
+  // What SCTP's 256 KiB swallowed, the one in transit, and the newest.
+  EXPECT_LE(slow.state().maps.size(), 4u);
+  EXPECT_EQ(slow.state().maps[0], as_binary(map_bytes(200'000, 1))) << "a map in transit is finished";
+  EXPECT_EQ(server->statistics().maps_skipped, count - slow.state().maps.size());
+}
+
+TEST_F(RoomTest, ClientThatVanishesIsNoticedAndItsCubeInherited) {
+  start();
+  Client vanishing(*relay, {.through_link = true});
+  ASSERT_TRUE(vanishing.wait_cube(1));
+  Client second(*relay), third(*relay);
+  ASSERT_TRUE(second.wait_open());
+  ASSERT_TRUE(third.wait_open());
+  vanishing.link().cut = true;
+  relay->send_raw(nlohmann::json{{"id", vanishing.id()}, {"type", "gone"}}.dump());
+  for (unsigned i = 1; i <= 3; ++i) server->publish(map_bytes(300'000, i), rest);
+  EXPECT_TRUE(eventually([&] { return server->statistics().peers == 2; }, 8s));
+  EXPECT_EQ(server->statistics().players, 2u);
+  EXPECT_TRUE(third.wait_maps(1) && second.wait_maps(1));
+}
+
+TEST_F(RoomTest, OpenChannelOutlivesTheClientsSignaling) {
+  start();
+  Client client(*relay);
+  ASSERT_TRUE(client.wait_cube(1));
+  relay->send_raw(nlohmann::json{{"id", client.id()}, {"type", "gone"}}.dump());
+  server->publish(map_bytes(300'000, 1), rest);
+  ASSERT_TRUE(client.wait_maps(1));
+  client.channel().send(std::string("up"));
+  EXPECT_TRUE(eventually([&] { return server->statistics().moves == 1; }));
+}
+
+TEST_F(RoomTest, ServerWithConnectionsEndsAtOnce) {
+  start();
+  Client client(*relay);
+  ASSERT_TRUE(client.wait_open());
+  for (unsigned i = 1; i <= 20; ++i) server->publish(map_bytes(300'000, i), rest);
+  const auto start = std::chrono::steady_clock::now();
+  server.reset();
+  EXPECT_LT(std::chrono::steady_clock::now() - start, 1s);
+  EXPECT_TRUE(client.wait([](const auto& s) { return s.closed; })) << "the client hears of it";
+}
+
+}  // namespace
+}  // namespace lichtveld::stream::test
