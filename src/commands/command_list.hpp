@@ -1,0 +1,12 @@
+// Each command adds itself to the command line.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace lichtveld::commands {
+
+void add_bake(CLI::App& application);
+void add_info(CLI::App& application);
+void add_serve(CLI::App& application);
+
+}  // namespace lichtveld::commands

@@ -1,0 +1,23 @@
+// Output files: complete or not there at all. Each is written beside its place and then renamed.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <glm/glm.hpp>
+#include <span>
+#include <string>
+
+namespace lichtveld::commands {
+
+// Calls write(temporary), then renames the temporary file to `file`; removes it if either fails. The temporary keeps the
+// extension. Throws UsageError if the folder is not there or cannot be written to.
+void write_whole(const std::filesystem::path& file, const std::function<void(const std::filesystem::path&)>& write);
+
+void write_bytes(const std::filesystem::path& file, std::span<const std::uint8_t> bytes);
+void write_text(const std::filesystem::path& file, const std::string& text);
+
+// size * size 32-bit float RGBA scanlines, row 0 on top.
+void write_exr(const std::filesystem::path& file, std::span<const glm::vec4> pixels, std::uint32_t size);
+
+}  // namespace lichtveld::commands

@@ -1,0 +1,110 @@
+#include "options.hpp"
+
+#include <map>
+
+#include "lichtveld/lightfield/directions.hpp"
+
+namespace lichtveld::commands {
+
+namespace {
+
+using lightfield::ABuffer;
+using lightfield::Sort;
+
+const std::map<std::string, ABuffer> abuffers = {{"stencil", ABuffer::stencil}, {"list", ABuffer::list}};
+const std::map<std::string, Sort> sorts = {
+    {"bitonic", Sort::bitonic}, {"compare-swap", Sort::compare_swap}, {"scan", Sort::scan}};
+
+template <typename Value>
+std::string key_of(const std::map<std::string, Value>& names, Value wanted) {
+  for (const auto& [name, value] : names)
+    if (value == wanted) return name;
+  throw std::logic_error("a value without a name");
+}
+
+// An option whose values are the keys of `names`.
+template <typename Value>
+void add_choice(CLI::App& command, const std::string& option, Value& value, const std::map<std::string, Value>& names,
+                const std::string& help) {
+  std::string choices;
+  for (const auto& [name, unused] : names) choices += (choices.empty() ? "" : "|") + name;
+  command
+      .add_option_function<std::string>(
+          option,
+          [&value, &names, option, choices](const std::string& text) {
+            const auto found = names.find(text);
+            if (found == names.end()) throw UsageError(option + " " + text + ": choose one of " + choices);
+            value = found->second;
+          },
+          help)
+      ->type_name(choices)
+      ->default_str(key_of(names, value));
+}
+
+}  // namespace
+
+void add_device_options(CLI::App& command, gpu::DeviceOptions& options) {
+  command
+      .add_option("--device", options.device,
+                  "The Vulkan device: a number of `lichtveld info` or a part of its name (default: a GPU before a CPU)")
+      ->envname("LICHTVELD_DEVICE");
+  command
+      .add_flag("--validation", options.validation,
+                "Run under the Vulkan validation layers, synchronization validation too; any message is an error")
+      ->envname("LICHTVELD_VALIDATION");
+}
+
+void check_validation(const gpu::Device& device) {
+  const auto messages = device.validation_messages();
+  if (!messages.empty())
+    throw std::runtime_error("the validation layers had " + std::to_string(messages.size()) +
+                             " complaints (above): a bug, please report it with this command line");
+}
+
+void add_method_options(CLI::App& command, lightfield::Settings& settings) {
+  command
+      .add_option_function<std::string>(
+          "--method",
+          [](const std::string& method) {
+            if (method == "links" || method == "reference")
+              throw UsageError("--method " + method + " is not built yet; there is thesis");
+            if (method != "thesis") throw UsageError("--method " + method + ": there is thesis");
+          },
+          "How the light is computed: thesis renders every PSF afresh in every bounce")
+      ->type_name("thesis")
+      ->default_str("thesis");
+  add_choice(command, "--abuffer", settings.abuffer, abuffers,
+             "How a PSF keeps all its layers: routed by the stencil to the samples of a pixel, or in a list of each pixel");
+  add_choice(command, "--sort", settings.sort, sorts,
+             "How a texel finds its layer: sorting them, or scanning for the nearest in front");
+  command.add_option("--layers", settings.layers,
+                     "Layers that a PSF pixel keeps, 1..128; pixels with more are counted, and room is made for them")
+      ->capture_default_str();
+}
+
+void add_quality_options(CLI::App& command, lightfield::Settings& settings) {
+  command.add_option("--size", settings.size, "Texels a side of the light map, 16..4096")->capture_default_str();
+  command.add_option("--psf", settings.psf, "Directions: " + lightfield::direction_counts_text())->capture_default_str();
+}
+
+void add_bounces_option(CLI::App& command, lightfield::Settings& settings) {
+  command
+      .add_option_function<std::string>(
+          "--bounces",
+          [&settings](const std::string& text) {
+            settings.bounces.reset();
+            if (text == "auto") return;
+            std::uint32_t bounces = 0;
+            if (!CLI::detail::lexical_cast(text, bounces) || bounces < 1 || text.front() == '-')
+              throw UsageError("--bounces " + text + ": a number from 1 (direct light), or auto");
+            settings.bounces = bounces;
+          },
+          "Path segments up to a texel: 1 is direct light; auto: until less than 0.1 % of the mean can be missing")
+      ->type_name("auto|N")
+      ->default_str(settings.bounces ? std::to_string(*settings.bounces) : "auto");
+}
+
+std::string name_of(ABuffer abuffer) { return key_of(abuffers, abuffer); }
+std::string name_of(Sort sort) { return key_of(sorts, sort); }
+
+}  // namespace lichtveld::commands

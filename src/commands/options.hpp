@@ -1,0 +1,39 @@
+// Options that several commands share, and the errors that the command line maps to exit statuses.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "lichtveld/gpu/device.hpp"
+#include "lichtveld/lightfield/settings.hpp"
+#include "lichtveld/scene/scene.hpp"
+
+namespace lichtveld::commands {
+
+// What the user asked for cannot be: exit status 2.
+struct UsageError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+// --device and --validation.
+void add_device_options(CLI::App& command, gpu::DeviceOptions& options);
+
+// Throws std::runtime_error if the validation layers complained: a programmer's error must not pass unseen.
+void check_validation(const gpu::Device& device);
+
+// --method, --abuffer, --sort, --layers: how to compute, whatever the quality. --method is checked against what there is.
+void add_method_options(CLI::App& command, lightfield::Settings& settings);
+
+// --size, --psf.
+void add_quality_options(CLI::App& command, lightfield::Settings& settings);
+
+// --bounces auto|N.
+void add_bounces_option(CLI::App& command, lightfield::Settings& settings);
+
+// The last part of a name, for options whose values are words: "compare-swap".
+std::string name_of(lightfield::ABuffer abuffer);
+std::string name_of(lightfield::Sort sort);
+
+}  // namespace lichtveld::commands

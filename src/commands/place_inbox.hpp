@@ -1,0 +1,50 @@
+// What the network tells the render loop: the newest places, and that it is time to end.
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <mutex>
+#include <optional>
+#include <vector>
+
+#include "lichtveld/stream/server.hpp"
+
+namespace lichtveld::commands {
+
+// Holds one value, the newest: a loop that was busy renders where things are now. Thread-safe.
+class PlaceInbox {
+ public:
+  using Places = std::vector<stream::Place>;
+
+  void put(Places places) {
+    const std::lock_guard lock(mutex_);
+    newest_ = std::move(places);
+    changed_.notify_one();
+  }
+
+  void stop() {
+    const std::lock_guard lock(mutex_);
+    stopped_ = true;
+    changed_.notify_one();
+  }
+
+  bool stopped() const {
+    const std::lock_guard lock(mutex_);
+    return stopped_;
+  }
+
+  // The newest places, once; empty when none came in time or when stopped.
+  std::optional<Places> take(std::chrono::milliseconds patience) {
+    std::unique_lock lock(mutex_);
+    changed_.wait_for(lock, patience, [&] { return newest_ || stopped_; });
+    return stopped_ ? std::nullopt : std::exchange(newest_, std::nullopt);
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  std::condition_variable changed_;
+  std::optional<Places> newest_;
+  bool stopped_ = false;
+};
+
+}  // namespace lichtveld::commands

@@ -1,0 +1,17 @@
+// The finest light map that a machine can renew often enough.
+#pragma once
+
+#include <chrono>
+
+#include "lichtveld/gpu/device.hpp"
+#include "lichtveld/lightfield/settings.hpp"
+#include "lichtveld/scene/scene.hpp"
+
+namespace lichtveld::commands {
+
+// Times light maps from coarse to fine on this device and returns `settings` with the size and PSFs of the finest one
+// that takes at most `budget`; the coarsest one if none does.
+lightfield::Settings finest_within(std::chrono::milliseconds budget, const gpu::Device& device,
+                                   const scene::Scene& scene, lightfield::Settings settings);
+
+}  // namespace lichtveld::commands

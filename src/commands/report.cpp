@@ -1,0 +1,36 @@
+#include "report.hpp"
+
+#include "options.hpp"
+
+namespace lichtveld::commands {
+
+nlohmann::ordered_json report(const gpu::Device& device, const lightfield::Settings& settings,
+                              const lightfield::Solution& solution, const gpu::PassTimes& times, double total_ms) {
+  nlohmann::ordered_json passes, memory;
+  for (const auto& [name, time] : times) passes[name] = {{"calls", time.calls}, {"gpu_ms", time.gpu_ms}};
+  std::uint64_t total_bytes = 0;
+  for (const auto& [name, bytes] : device.ledger()->bytes_by_name()) {
+    memory[name] = bytes;
+    total_bytes += bytes;
+  }
+  memory["total"] = total_bytes;
+  return {{"device", device.summary().name},
+          {"driver", device.summary().driver},
+          {"method", "thesis"},
+          {"abuffer", name_of(settings.abuffer)},
+          {"sort", name_of(settings.sort)},
+          {"size", settings.size},
+          {"psf", settings.psf},
+          {"layers", settings.layers},
+          {"bounces_used", solution.bounces},
+          {"residual", solution.residual},
+          {"texels_valid", solution.texels_valid},
+          {"depth_layers_max", solution.depth_layers_max},
+          {"overflow_pixels", solution.overflow_pixels},
+          {"miss_fraction",
+           solution.rays > 0 ? static_cast<double>(solution.misses) / static_cast<double>(solution.rays) : 0.0},
+          {"time_ms", {{"total", total_ms}, {"passes", passes}}},
+          {"memory_bytes", memory}};
+}
+
+}  // namespace lichtveld::commands
