@@ -1,0 +1,39 @@
+import { Counter, Gauge, Registry } from 'prom-client';
+
+/**
+ * The counters of one signaling server, in a registry of their own.
+ * @param {import('./room.js').Room} room
+ */
+export function createMetrics(room) {
+  const registry = new Registry();
+  const registers = [registry];
+  /** @type {(name: string, help: string, labelNames?: string[]) => Counter} */
+  const counter = (name, help, labelNames = []) =>
+    new Counter({ name: `lichtveld_signaling_${name}`, help, labelNames, registers });
+  /** @type {(name: string, help: string, value: () => number) => Gauge} */
+  const gauge = (name, help, value) =>
+    new Gauge({
+      name: `lichtveld_signaling_${name}`,
+      help,
+      registers,
+      collect() {
+        this.set(value());
+      },
+    });
+
+  gauge('clients', 'Clients connected now.', () => room.clientCount);
+  gauge('server_connected', '1 while a render server is connected, else 0.', () => Number(room.hasServer));
+  return {
+    registry,
+    connections: counter('connections_total', 'Connections accepted, by role.', ['role']),
+    refusedConnections: counter('refused_connections_total', 'Connections refused, by reason.', ['reason']),
+    refusedMessages: counter('refused_messages_total', 'Messages refused, by reason.', ['reason']),
+    droppedConnections: counter('dropped_connections_total', 'Connections that we ended, by reason.', [
+      'reason',
+    ]),
+    relayedMessages: counter('relayed_messages_total', 'Messages relayed, by type.', ['type']),
+    relayedBytes: counter('relayed_bytes_total', 'Bytes of the messages relayed.'),
+  };
+}
+
+/** @typedef {ReturnType<typeof createMetrics>} Metrics */

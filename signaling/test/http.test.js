@@ -1,0 +1,96 @@
+import assert from 'node:assert/strict';
+import { connect } from 'node:net';
+import { test } from 'node:test';
+import { Peer, metric, populate, sceneBytes, start } from './harness.js';
+
+/** One request as raw bytes: fetch() would tidy up the path before it leaves. */
+function rawGet(port, path) {
+  return new Promise((resolve, reject) => {
+    const socket = connect(port, '127.0.0.1', () =>
+      socket.write(`GET ${path} HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n`),
+    );
+    let text = '';
+    socket.on('data', (chunk) => (text += chunk));
+    socket.on('end', () => resolve(text));
+    socket.on('error', reject);
+  });
+}
+
+test('the page comes with security headers and is never cached stale', async (t) => {
+  const signaling = await start(t);
+  const response = await fetch(signaling.http);
+  assert.equal(response.status, 200);
+  assert.match(await response.text(), /<title>page/);
+  assert.match(response.headers.get('content-security-policy') ?? '', /default-src 'self'/);
+  assert.equal(response.headers.get('x-content-type-options'), 'nosniff');
+  assert.equal(response.headers.get('cache-control'), 'no-cache');
+});
+
+test('nothing outside the client folder is served', async (t) => {
+  const signaling = await start(t);
+  const paths = [
+    '/../token',
+    '/%2e%2e/token',
+    '/..%2ftoken',
+    '/..%5ctoken',
+    '//../token',
+    '/%00',
+    '/%ff',
+    '/index.html/../../token',
+  ];
+  for (const path of paths) {
+    const answer = await rawGet(signaling.port, path);
+    assert.match(answer, /^HTTP\/1\.1 4\d\d /, path);
+    assert.doesNotMatch(answer, /a-secret-for-tests/, path);
+  }
+});
+
+test('the scene is served under its fixed name and revalidated by its hash', async (t) => {
+  const signaling = await start(t);
+  const response = await fetch(`${signaling.http}/scene.glb?v=1`);
+  assert.deepEqual(Buffer.from(await response.arrayBuffer()), sceneBytes);
+  const again = await fetch(`${signaling.http}/scene.glb`, {
+    headers: { 'If-None-Match': response.headers.get('etag') ?? '' },
+  });
+  assert.equal(again.status, 304);
+});
+
+test('/healthz says who is there', async (t) => {
+  const signaling = await start(t);
+  const health = async () => (await fetch(`${signaling.http}/healthz`)).json();
+  assert.deepEqual(await health(), { status: 'ok', server: false, clients: 0 });
+  await populate(signaling, 2);
+  assert.deepEqual(await health(), { status: 'ok', server: true, clients: 2 });
+});
+
+test('/metrics is Prometheus text that counts connections, messages and bytes', async (t) => {
+  const signaling = await start(t);
+  const { serverId, server, clients } = await populate(signaling, 1);
+  const text = JSON.stringify({ id: serverId, type: 'offer', description: 'v=0' });
+  clients[0].peer.send(text);
+  await server.next();
+  const response = await fetch(`${signaling.http}/metrics`);
+  assert.match(response.headers.get('content-type') ?? '', /^text\/plain/);
+  assert.equal(await metric(signaling, 'clients'), 1);
+  assert.equal(await metric(signaling, 'server_connected'), 1);
+  assert.equal(await metric(signaling, 'connections_total{role="client"}'), 1);
+  assert.equal(await metric(signaling, 'relayed_bytes_total'), text.length);
+});
+
+test('only GET and HEAD are answered', async (t) => {
+  const signaling = await start(t);
+  assert.equal((await fetch(signaling.http, { method: 'POST', body: 'x' })).status, 405);
+});
+
+test('close() says good-bye to everybody and is quick even when nobody answers', async (t) => {
+  const signaling = await start(t);
+  const { server, clients } = await populate(signaling, 1);
+  const deaf = Peer.client(signaling.ws);
+  await deaf.next();
+  deaf.socket.pause();
+  const begin = Date.now();
+  await signaling.close();
+  assert.ok(Date.now() - begin < 2000);
+  assert.equal((await server.closed).code, 1001);
+  assert.equal((await clients[0].peer.closed).code, 1001);
+});

@@ -1,0 +1,136 @@
+import assert from 'node:assert/strict';
+import { test } from 'node:test';
+import { setTimeout as sleep } from 'node:timers/promises';
+import { defaultLimits } from '../limits.js';
+import { Peer, metric, populate, start } from './harness.js';
+
+test("messages reach the named peer with the sender's id and only the known fields", async (t) => {
+  const signaling = await start(t);
+  const { server, serverId, clients } = await populate(signaling, 2);
+  const [a, b] = clients;
+
+  a.peer.send({ id: serverId, type: 'offer', description: 'v=0', sneaked: 'in' });
+  assert.deepEqual(await server.next(), { id: a.id, type: 'offer', description: 'v=0' });
+  server.send({ id: a.id, type: 'answer', description: 'v=1' });
+  assert.deepEqual(await a.peer.next(), { id: serverId, type: 'answer', description: 'v=1' });
+  b.peer.send({ id: serverId, type: 'candidate', candidate: 'candidate:1', mid: '0' });
+  assert.deepEqual(await server.next(), { id: b.id, type: 'candidate', candidate: 'candidate:1', mid: '0' });
+  server.send({ id: b.id, type: 'role', cube: 2, players: 2, watchers: 0 });
+  assert.deepEqual(await b.peer.next(), { id: serverId, type: 'role', cube: 2, players: 2, watchers: 0 });
+  assert.equal(await metric(signaling, 'relayed_messages_total{type="role"}'), 1);
+});
+
+test('the server hears of a client that leaves, however it leaves', async (t) => {
+  const signaling = await start(t);
+  const { server, clients } = await populate(signaling, 2);
+  clients[0].peer.socket.close();
+  assert.deepEqual(await server.next(), { id: clients[0].id, type: 'gone' });
+  clients[1].peer.socket.terminate();
+  assert.deepEqual(await server.next(), { id: clients[1].id, type: 'gone' });
+});
+
+test('clients cannot talk to clients, claim roles or leave for others', async (t) => {
+  const signaling = await start(t);
+  const { server, serverId, clients } = await populate(signaling, 2);
+  const [a, b] = clients;
+  a.peer.send({ id: b.id, type: 'offer', description: 'v=0' });
+  a.peer.send({ id: serverId, type: 'role', cube: 1, players: 1, watchers: 0 });
+  a.peer.send({ id: b.id, type: 'gone' });
+  a.peer.send({ id: serverId, type: 'offer', description: 'the only one that passes' });
+  assert.equal((await server.next()).description, 'the only one that passes');
+  await assert.rejects(b.peer.next(100));
+  for (const reason of ['forbidden_route', 'forbidden_type', 'unknown_type'])
+    assert.equal(await metric(signaling, `refused_messages_total{reason="${reason}"}`), 1, reason);
+});
+
+test('garbage is counted, then closes its sender with 1008; nobody else notices', async (t) => {
+  const signaling = await start(t);
+  const { server, serverId, clients } = await populate(signaling, 2);
+  const garbage = [
+    'not json',
+    '',
+    '[]',
+    'null',
+    '7',
+    '{}',
+    '{"type":"offer"}',
+    '{"type":"__proto__","id":"x"}',
+    { id: serverId, type: 'offer', description: 7 },
+    { id: serverId, type: 'offer', description: '' },
+    { id: serverId, type: 'offer', description: 'x'.repeat(defaultLimits.maxDescriptionLength + 1) },
+    { id: serverId, type: 'candidate', candidate: 'x', mid: 0 },
+    { id: [serverId], type: 'answer', description: 'x' },
+    Buffer.from([0, 255]),
+  ];
+  assert.ok(garbage.length < defaultLimits.maxRefusals);
+  for (const value of garbage) clients[0].peer.send(value);
+  clients[0].peer.send({ id: serverId, type: 'offer', description: 'still here' });
+  assert.equal((await server.next()).description, 'still here');
+  for (let i = garbage.length; i < defaultLimits.maxRefusals; ++i) clients[0].peer.send('more');
+  assert.equal((await clients[0].peer.closed).code, 1008);
+  assert.equal((await server.next()).type, 'gone');
+
+  clients[1].peer.send({ id: serverId, type: 'offer', description: 'unharmed' });
+  assert.equal((await server.next()).description, 'unharmed');
+});
+
+test('an oversized message closes its sender with 1009', async (t) => {
+  const signaling = await start(t);
+  const { server, clients } = await populate(signaling, 1);
+  clients[0].peer.send('x'.repeat(defaultLimits.maxMessageBytes + 1));
+  assert.equal((await clients[0].peer.closed).code, 1009);
+  assert.equal((await server.next()).type, 'gone');
+  assert.equal(await metric(signaling, 'dropped_connections_total{reason="oversized"}'), 1);
+});
+
+test('a flood is cut off after the burst, and the others go on', async (t) => {
+  const signaling = await start(t);
+  const { server, serverId, clients } = await populate(signaling, 2);
+  const candidate = { id: serverId, type: 'candidate', candidate: 'candidate:1', mid: '0' };
+  for (let i = 0; i < 1000; ++i) clients[0].peer.send(candidate);
+  assert.equal((await clients[0].peer.closed).code, 1008);
+  const relayed = await metric(signaling, 'relayed_messages_total{type="candidate"}');
+  assert.ok(relayed >= 100 && relayed < 150, `relayed ${relayed}`);
+
+  clients[1].peer.send({ id: serverId, type: 'offer', description: 'unharmed' });
+  for (let message = await server.next(); message.description !== 'unharmed'; message = await server.next());
+});
+
+test('messages to somebody who has just left are no offence', async (t) => {
+  const signaling = await start(t);
+  const { server, clients } = await populate(signaling, 1);
+  clients[0].peer.socket.terminate();
+  assert.equal((await server.next()).type, 'gone');
+  for (let i = 0; i < 2 * defaultLimits.maxRefusals; ++i)
+    server.send({ id: clients[0].id, type: 'candidate', candidate: 'late', mid: '0' });
+  const next = Peer.client(signaling.ws);
+  const { id } = await next.next();
+  server.send({ id, type: 'answer', description: 'v=0' });
+  assert.equal((await next.next()).type, 'answer');
+});
+
+test('a peer that stops answering pings is gone, one that answers stays', async (t) => {
+  const signaling = await start(t, { limits: { pingIntervalMs: 50 } });
+  const silent = Peer.server(signaling.ws, { autoPong: false });
+  await silent.next();
+  const client = Peer.client(signaling.ws);
+  assert.ok((await client.next()).server);
+  assert.deepEqual(await client.next(), { type: 'waiting' });
+  assert.equal((await silent.closed).code, 1006);
+  const back = Peer.server(signaling.ws);
+  assert.equal((await back.next()).type, 'welcome');
+  await sleep(300);
+  assert.equal(client.socket.readyState, client.socket.OPEN);
+  assert.equal(await metric(signaling, 'dropped_connections_total{reason="silent"}'), 1);
+});
+
+test('a client that does not read is dropped before it costs memory', async (t) => {
+  const signaling = await start(t, { limits: { maxBufferedBytes: 64 * 1024 } });
+  const { server, clients } = await populate(signaling, 1);
+  clients[0].peer.socket.pause();
+  const description = 'x'.repeat(defaultLimits.maxDescriptionLength);
+  // The kernel's own buffers take a few MB before ours begins to fill.
+  for (let i = 0; i < 1500; ++i) server.send({ id: clients[0].id, type: 'answer', description });
+  assert.deepEqual(await server.next(10_000), { id: clients[0].id, type: 'gone' });
+  assert.equal(await metric(signaling, 'dropped_connections_total{reason="does_not_read"}'), 1);
+});
