@@ -1,0 +1,58 @@
+import assert from 'node:assert/strict';
+import { once } from 'node:events';
+import { existsSync, mkdtempSync, readFileSync, readdirSync, rmSync } from 'node:fs';
+import { createServer } from 'node:net';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { test } from 'node:test';
+import { freePort, startPlay } from './programs.js';
+
+/** The processes that were started by this one. */
+const childrenOf = (pid) =>
+  readFileSync(`/proc/${pid}/task/${pid}/children`, 'utf8').trim().split(' ').filter(Boolean);
+
+test('it says ready once, and leaves neither processes nor files when it is ended', async (t) => {
+  const folder = mkdtempSync(join(tmpdir(), 'lichtveld-e2e-'));
+  t.after(() => rmSync(folder, { recursive: true, force: true }));
+  const port = await freePort();
+  const program = startPlay(t, { port, env: { TMPDIR: folder } });
+  await program.says(`ready http://127.0.0.1:${port}\n`);
+  assert.equal(program.stdout, `ready http://127.0.0.1:${port}\n`);
+  const children = childrenOf(program.child.pid);
+  assert.equal(children.length, 2);
+  assert.notDeepEqual(readdirSync(folder), []);
+
+  program.child.kill('SIGTERM');
+  assert.deepEqual(await program.exited, [0, null]);
+  for (const pid of children) assert.equal(existsSync(`/proc/${pid}`), false, `process ${pid} is still there`);
+  assert.deepEqual(readdirSync(folder), []);
+});
+
+test('a busy port ends it with 2, and it says which port', async (t) => {
+  const blocker = createServer().listen(0, '127.0.0.1');
+  await once(blocker, 'listening');
+  t.after(() => blocker.close());
+  const { port } = /** @type {import('node:net').AddressInfo} */ (blocker.address());
+  const program = startPlay(t, { port });
+  assert.deepEqual(await program.exited, [2, null]);
+  assert.match(program.output, new RegExp(`port ${port} .* is taken`));
+  assert.equal(program.stdout, '');
+});
+
+test('when the render server gives up, so does the rest, with its exit code and its name', async (t) => {
+  const program = startPlay(t, { port: await freePort(), serveOptions: ['--psf', '25'] });
+  assert.deepEqual(await program.exited, [2, null]);
+  assert.match(program.output, /play: server ended with exit code 2/);
+  assert.equal(program.stdout, '');
+});
+
+test('bad usage ends it with 2 and names the culprit', async (t) => {
+  for (const [port, message] of [
+    ['99999', /--port.*99999/],
+    ['none', /--port.*none/],
+  ]) {
+    const program = startPlay(t, { port });
+    assert.deepEqual(await program.exited, [2, null]);
+    assert.match(program.output, message);
+  }
+});

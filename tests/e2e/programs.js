@@ -1,0 +1,101 @@
+import { spawn } from 'node:child_process';
+import { once } from 'node:events';
+import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
+import { createServer } from 'node:net';
+import { tmpdir } from 'node:os';
+import { join, resolve } from 'node:path';
+import { fileURLToPath } from 'node:url';
+
+export const root = fileURLToPath(new URL('../..', import.meta.url));
+export const scenePath = join(root, 'assets/cornell.glb');
+const executable = resolve(process.env.LICHTVELD || join(root, 'build/release/lichtveld'));
+
+/** Small, for speed: what is tested is the way of the light, not its beauty. */
+const serveOptions = ['--size', '128', '--psf', '24', '--bounces', '1'];
+
+export async function freePort() {
+  const probe = createServer().listen(0, '127.0.0.1');
+  await once(probe, 'listening');
+  const { port } = /** @type {import('node:net').AddressInfo} */ (probe.address());
+  probe.close();
+  await once(probe, 'close');
+  return port;
+}
+
+/** A program whose output is kept for the report of a failure, and which ends with the test. */
+class Program {
+  /** Standard output and error together, and the former alone. */
+  output = '';
+  stdout = '';
+
+  constructor(t, name, command, args, env = {}) {
+    this.child = spawn(command, args, {
+      cwd: root,
+      stdio: ['ignore', 'pipe', 'pipe'],
+      env: { ...process.env, ...env },
+    });
+    this.exited = once(this.child, 'close');
+    for (const stream of [this.child.stdout, this.child.stderr])
+      stream.on('data', (data) => (this.output += data));
+    this.child.stdout.on('data', (data) => (this.stdout += data));
+    t.after(async () => {
+      this.child.kill('SIGTERM');
+      await this.exited;
+      t.diagnostic(`${name} said:\n${this.output}`);
+    });
+  }
+
+  /** Waits until its output holds this text. */
+  async says(text, timeoutMs = 60_000) {
+    const timeout = AbortSignal.timeout(timeoutMs);
+    while (!this.output.includes(text)) {
+      if (timeout.aborted || this.child.exitCode !== null || this.child.signalCode !== null)
+        throw new Error(`waited in vain for '${text}'; it said:\n${this.output}`);
+      await new Promise((proceed) => setTimeout(proceed, 50));
+    }
+  }
+}
+
+/** The room's programs as `./dev play` runs them, from the moment of their start. */
+export function startPlay(t, { port, serveOptions: more = [], env = {} }) {
+  const args = ['--port', String(port), '--scene', scenePath, '--', ...serveOptions, ...more];
+  return new Program(t, 'play', process.execPath, [join(root, 'tools/play.mjs'), ...args], env);
+}
+
+/** The whole room, ready to be joined. */
+export async function play(t) {
+  const port = await freePort();
+  await startPlay(t, { port }).says(`ready http://127.0.0.1:${port}\n`);
+  return { url: `http://127.0.0.1:${port}` };
+}
+
+/** Signaling alone; `serve` starts a render server for it, as often as wanted. */
+export async function signaling(t) {
+  const port = await freePort();
+  const folder = mkdtempSync(join(tmpdir(), 'lichtveld-e2e-'));
+  const token = join(folder, 'token');
+  writeFileSync(token, 'a-secret-for-tests\n', { mode: 0o600 });
+  const client = join(root, 'web-client/dist');
+  const files = ['--token-file', token, '--client', client, '--scene', scenePath];
+  const program = new Program(t, 'signaling', process.execPath, [
+    join(root, 'signaling/main.js'),
+    '--port',
+    String(port),
+    ...files,
+  ]);
+  t.after(() => rmSync(folder, { recursive: true }));
+  await program.says('signaling listens on');
+  const serveArgs = [
+    'serve',
+    '--scene',
+    scenePath,
+    '--signaling',
+    `ws://127.0.0.1:${port}/server`,
+    '--token-file',
+    token,
+  ];
+  return {
+    url: `http://127.0.0.1:${port}`,
+    serve: () => new Program(t, 'server', executable, [...serveArgs, '--bind', '127.0.0.1', ...serveOptions]),
+  };
+}

@@ -1,0 +1,42 @@
+import { LinearFilter, SRGBColorSpace, Texture } from 'three';
+
+/** The newest map as a texture; one picture is held at a time. */
+export class LightMap {
+  readonly texture = new Texture<ImageBitmap | undefined>();
+
+  constructor() {
+    this.texture.channel = 1; // glTF's TEXCOORD_1
+    this.texture.minFilter = this.texture.magFilter = LinearFilter;
+    this.texture.generateMipmaps = false;
+    // The PNG is sRGB: decoded for filtering, encoded again on the way to the screen, so that values come out as sent.
+    this.texture.colorSpace = SRGBColorSpace;
+  }
+
+  get picture(): ImageBitmap | undefined {
+    return this.texture.image ?? undefined;
+  }
+
+  show(picture: ImageBitmap): void {
+    const old = this.picture;
+    // A texture's storage cannot change its size.
+    if (old && (old.width !== picture.width || old.height !== picture.height)) this.texture.dispose();
+    this.texture.image = picture;
+    this.texture.needsUpdate = true;
+    old?.close();
+  }
+
+  /** The pixels of the newest map, row 0 first, where glTF's v is 0. */
+  pixels(): ImageData | undefined {
+    const picture = this.picture;
+    if (!picture) return undefined;
+    const canvas = new OffscreenCanvas(picture.width, picture.height);
+    const context = canvas.getContext('2d', { willReadFrequently: true });
+    context?.drawImage(picture, 0, 0);
+    return context?.getImageData(0, 0, picture.width, picture.height);
+  }
+}
+
+/** Decodes a map; rejects what is no picture. Row 0 of the PNG becomes the texture's v = 0, as glTF has it. */
+export function decodeMap(png: Blob): Promise<ImageBitmap> {
+  return createImageBitmap(png, { premultiplyAlpha: 'none', colorSpaceConversion: 'none' });
+}

@@ -1,0 +1,82 @@
+import { channelLabel, type Direction } from './protocol';
+import type { Incoming, Outgoing } from './signaling';
+
+export interface PeerEvents {
+  onSignal(message: Outgoing): void;
+  onOpen(): void;
+  onData(data: string | ArrayBuffer): void;
+  /** Once, when the connection cannot be made or has ended. */
+  onClose(): void;
+}
+
+/** One WebRTC connection to one render server: we make the channel and offer, the server answers. */
+export class Peer {
+  readonly #connection = new RTCPeerConnection({ iceServers: [] });
+  readonly #channel: RTCDataChannel;
+  /** Candidates may overtake the answer; they are of no use before it. */
+  readonly #early: RTCIceCandidateInit[] = [];
+  #ended = false;
+
+  constructor(
+    readonly server: string,
+    private readonly events: PeerEvents,
+  ) {
+    this.#channel = this.#connection.createDataChannel(channelLabel);
+    this.#channel.binaryType = 'arraybuffer';
+    this.#channel.onopen = () => events.onOpen();
+    this.#channel.onmessage = ({ data }) => events.onData(data as string | ArrayBuffer);
+    this.#channel.onclose = () => this.#end();
+    this.#connection.onconnectionstatechange = () => {
+      if (this.#connection.connectionState === 'failed') this.#end();
+    };
+    this.#connection.onicecandidate = ({ candidate }) => {
+      if (candidate?.candidate)
+        events.onSignal({
+          id: server,
+          type: 'candidate',
+          candidate: candidate.candidate,
+          mid: candidate.sdpMid ?? '0',
+        });
+    };
+    this.#offer().catch(() => this.#end());
+  }
+
+  /** Takes an answer or a candidate of the server. */
+  async take(message: Incoming): Promise<void> {
+    if (this.#ended) return;
+    try {
+      if (message.type === 'answer') {
+        await this.#connection.setRemoteDescription({ type: 'answer', sdp: message.description });
+        for (const candidate of this.#early.splice(0)) await this.#connection.addIceCandidate(candidate);
+      } else if (message.type === 'candidate') {
+        const candidate = { candidate: message.candidate, sdpMid: message.mid };
+        if (this.#connection.remoteDescription) await this.#connection.addIceCandidate(candidate);
+        else if (this.#early.length < 64) this.#early.push(candidate);
+      }
+    } catch (error) {
+      // One bad candidate does not spoil the others; a bad answer ends in a time-out of the session.
+      console.warn('lichtveld: a signaling message was of no use:', error);
+    }
+  }
+
+  send(direction: Direction): void {
+    if (this.#channel.readyState === 'open') this.#channel.send(direction);
+  }
+
+  close(): void {
+    this.#ended = true;
+    this.#connection.close();
+  }
+
+  async #offer(): Promise<void> {
+    const offer = await this.#connection.createOffer();
+    await this.#connection.setLocalDescription(offer);
+    this.events.onSignal({ id: this.server, type: 'offer', description: offer.sdp ?? '' });
+  }
+
+  #end(): void {
+    if (this.#ended) return;
+    this.close();
+    this.events.onClose();
+  }
+}

@@ -1,0 +1,95 @@
+/**
+ * Data channel v1, as pure functions over what comes in.
+ *
+ *   server -> client  binary chunks of one PNG, then the text PNG_TRANSFER_COMPLETE
+ *                     text `x1!y1/x2!y2`: where the movable nodes' origins are, in metres, x and y of the scene
+ *   client -> server  text up | down | left | right: one step of one's own cube
+ */
+export const channelLabel = 'lichtveld';
+export const mapComplete = 'PNG_TRANSFER_COMPLETE';
+
+/** A map of 4096 x 4096 texels compresses to less; more than this is not a map of ours. */
+export const maxMapBytes = 16 * 1024 * 1024;
+
+export type Direction = 'up' | 'down' | 'left' | 'right';
+
+/** Metres, in the scene's own axes. */
+export interface Place {
+  readonly x: number;
+  readonly y: number;
+}
+
+export type Received =
+  | { readonly kind: 'map'; readonly png: Blob }
+  | { readonly kind: 'places'; readonly places: readonly Place[] }
+  | { readonly kind: 'refused'; readonly reason: string };
+
+const number = String.raw`[-+]?\d{1,9}(?:\.\d{1,50})?`;
+const placesPattern = new RegExp(`^${number}!${number}(?:/${number}!${number})*$`, 'i');
+const maxPlacesLength = 256;
+
+/** Reads `x1!y1/x2!y2`; undefined for anything else. */
+export function parsePlaces(text: string): Place[] | undefined {
+  if (text.length > maxPlacesLength || !placesPattern.test(text)) return undefined;
+  return text.split('/').map((pair) => {
+    const [x = 0, y = 0] = pair.split('!').map(Number);
+    return { x, y };
+  });
+}
+
+const pngSignature = [0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a];
+
+/** Puts a map together from its chunks, and never holds more than `maxMapBytes`. */
+export class Receiver {
+  #chunks: ArrayBuffer[] = [];
+  #bytes = 0;
+  #oversized = false;
+
+  /** Takes one message; undefined while a map is still under way. */
+  take(data: string | ArrayBuffer): Received | undefined {
+    if (typeof data !== 'string') return this.#takeChunk(data);
+    if (data === mapComplete) return this.#finishMap();
+    const places = parsePlaces(data);
+    return places ? { kind: 'places', places } : { kind: 'refused', reason: 'unknown text' };
+  }
+
+  #takeChunk(chunk: ArrayBuffer): Received | undefined {
+    if (this.#oversized) return undefined;
+    if (this.#bytes + chunk.byteLength > maxMapBytes) {
+      // The rest of it is skipped until its end, so that the next map starts clean.
+      this.#reset();
+      this.#oversized = true;
+      return { kind: 'refused', reason: `a map larger than ${maxMapBytes} bytes` };
+    }
+    this.#chunks.push(chunk);
+    this.#bytes += chunk.byteLength;
+    return undefined;
+  }
+
+  #finishMap(): Received | undefined {
+    const chunks = this.#chunks;
+    const wasOversized = this.#oversized;
+    this.#reset();
+    if (wasOversized) return undefined;
+    const png = new Blob(chunks, { type: 'image/png' });
+    const head = new Uint8Array(joinHead(chunks, pngSignature.length));
+    const isPng = pngSignature.every((byte, i) => head[i] === byte);
+    return isPng ? { kind: 'map', png } : { kind: 'refused', reason: 'a map that is no PNG' };
+  }
+
+  #reset(): void {
+    this.#chunks = [];
+    this.#bytes = 0;
+    this.#oversized = false;
+  }
+}
+
+/** The first bytes of the chunks together: a chunk may be shorter than a PNG's signature. */
+function joinHead(chunks: readonly ArrayBuffer[], length: number): number[] {
+  const head: number[] = [];
+  for (const chunk of chunks) {
+    head.push(...new Uint8Array(chunk, 0, Math.min(chunk.byteLength, length - head.length)));
+    if (head.length >= length) break;
+  }
+  return head;
+}
