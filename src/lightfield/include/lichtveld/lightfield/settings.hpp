@@ -12,7 +12,7 @@ enum class Sort { bitonic, compare_swap, scan };  // as SORT_* in shaders/includ
 struct Settings {
   std::uint32_t size = 256;              // atlas and PSF raster, texels a side: 16..4096
   std::uint32_t psf = 384;               // directions: one of direction_counts()
-  std::optional<std::uint32_t> bounces;  // path segments up to the texel, 1 = direct light; empty: until converged
+  std::optional<std::uint32_t> bounces = {};  // path segments up to the texel, 1 = direct light; empty: until converged
   std::uint32_t layers = 8;              // of the A-buffer: 1..128; scenes that need more get more, and say so
   ABuffer abuffer = ABuffer::stencil;
   Sort sort = Sort::compare_swap;

@@ -1,0 +1,107 @@
+// Device choice, resources, frames.
+#include <gmock/gmock.h>
+
+#include "device_for_tests.hpp"
+#include "lichtveld/gpu/transfer.hpp"
+
+namespace lichtveld::gpu {
+namespace {
+
+using ::testing::HasSubstr;
+using Gpu = lichtveld::testing::WithDevice;
+
+constexpr auto transfer = vk::BufferUsageFlagBits::eTransferSrc | vk::BufferUsageFlagBits::eTransferDst;
+
+TEST(DeviceChoice, ListsWhatIsUsable) {
+  const auto devices = list_devices();
+  ASSERT_FALSE(devices.empty());
+  EXPECT_FALSE(devices.front().name.empty());
+  EXPECT_GE(devices.front().samples, 4u);  // every Vulkan device has 4 samples
+  EXPECT_GE(devices.front().max_storage_buffer, 128u << 20);
+}
+
+TEST(DeviceChoice, TakesANumberOrAPartOfAName) {
+  const std::string name = list_devices().front().name;
+  EXPECT_EQ(Device({.device = "0"}).summary().name, name);
+  EXPECT_EQ(Device({.device = name.substr(1, 4)}).summary().name, name);
+}
+
+TEST(DeviceChoice, NamesWhatThereIsWhenNothingMatches) {
+  try {
+    Device({.device = "no such device"});
+    FAIL() << "it was found";
+  } catch (const NoDevice& error) {
+    EXPECT_THAT(error.what(), HasSubstr("no such device"));
+    EXPECT_THAT(error.what(), HasSubstr(list_devices().front().name));
+  }
+}
+
+TEST_F(Gpu, MemoryIsAccountedByNameForAsLongAsItLives) {
+  {
+    const Buffer buffer(device(), "test/buffer", 1000, transfer);
+    const Buffer twin(device(), "test/buffer", 1000, transfer);
+    EXPECT_GE(device().ledger()->bytes_by_name().at("test/buffer"), 2000u);
+  }
+  EXPECT_FALSE(device().ledger()->bytes_by_name().contains("test/buffer"));
+}
+
+TEST_F(Gpu, AFramePutsBarriersBetweenDependentPasses) {
+  const Buffer a(device(), "test/a", 4096, transfer), b(device(), "test/b", 4096, transfer);
+  const Buffer out(device(), "test/out", 4096, transfer, Memory::host);
+  PassTimes times;
+  Frame frame(device(), times);
+  for (std::uint32_t round = 1; round <= 3; ++round) {  // write after write, read after write, write after read
+    frame.clear("fill", a, round);
+    frame.copy("copy", a, b);
+    frame.copy("copy", b, out);
+  }
+  frame.to_host(out);
+  frame.submit_and_wait();
+  for (const auto word : out.as<std::uint32_t>()) ASSERT_EQ(word, 3u);
+  EXPECT_EQ(times.at("fill").calls, 3u);
+  EXPECT_EQ(times.at("copy").calls, 6u);
+}
+
+TEST_F(Gpu, ManyPassesInOneFrameAreAllTimed) {
+  const Buffer buffer(device(), "test/buffer", 64, transfer);
+  PassTimes times;
+  Frame frame(device(), times);
+  for (int pass = 0; pass < 1500; ++pass) frame.clear("fill", buffer);  // more than one query pool holds
+  frame.submit_and_wait();
+  EXPECT_EQ(times.at("fill").calls, 1500u);
+  EXPECT_GT(times.at("fill").gpu_ms, 0);
+}
+
+TEST_F(Gpu, ImagesComeBackAsTheyWereSent) {
+  const std::vector<std::uint8_t> pixels = {1, 2, 3, 4, 5, 6, 7, 8};
+  Buffer staging(device(), "test/staging", pixels.size(), transfer, Memory::host);
+  std::copy(pixels.begin(), pixels.end(), reinterpret_cast<std::uint8_t*>(staging.bytes().data()));
+  const Image image(device(), "test/image", {.width = 2, .height = 1}, vk::Format::eR8G8B8A8Unorm,
+                    vk::ImageUsageFlagBits::eSampled | vk::ImageUsageFlagBits::eTransferSrc |
+                        vk::ImageUsageFlagBits::eTransferDst);
+  PassTimes times;
+  Frame frame(device(), times);
+  frame.copy("upload", staging, image);
+  frame.submit_and_wait();
+  const auto back = download<std::array<std::uint8_t, 4>>(device(), image);
+  EXPECT_EQ(back[1][3], 8);
+  EXPECT_EQ(back[0][0], 1);
+}
+
+// If this fails, the layers are not on, and every other test's silence means nothing.
+TEST(Validation, SeesAMissingBarrier) {
+  const Device device({.device = "", .validation = true});
+  const Buffer buffer(device, "test/raced", 64, transfer);
+  const vk::raii::CommandBuffers made(device.handle(), {.commandPool = *device.commands(), .commandBufferCount = 1});
+  const auto& commands = made.front();
+  commands.begin({});
+  commands.fillBuffer(buffer.handle(), 0, 64, 1);
+  commands.fillBuffer(buffer.handle(), 0, 64, 2);
+  commands.end();
+  ASSERT_FALSE(device.validation_messages().empty());
+  EXPECT_THAT(device.validation_messages().front(), HasSubstr("SYNC-HAZARD-WRITE-AFTER-WRITE"));
+  EXPECT_THAT(device.validation_messages().front(), HasSubstr("test/raced"));
+}
+
+}  // namespace
+}  // namespace lichtveld::gpu

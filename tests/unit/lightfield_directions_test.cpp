@@ -1,0 +1,81 @@
+// The direction sets and their views.
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "emit_radiance.hpp"
+#include "lichtveld/lightfield/directions.hpp"
+
+namespace lichtveld::lightfield {
+namespace {
+
+using ::testing::HasSubstr;
+
+class DirectionSet : public ::testing::TestWithParam<std::uint32_t> {};
+
+TEST_P(DirectionSet, CoversTheSphereOnce) {
+  const auto set = directions(GetParam());
+  ASSERT_EQ(set.size(), GetParam());
+  double sum = 0, smallest = 100, largest = 0;
+  glm::dvec3 mean(0);
+  for (const auto& direction : set) {
+    EXPECT_NEAR(glm::length(direction.along), 1, 1e-6);
+    sum += direction.solid_angle;
+    mean += glm::dvec3(direction.along) * double{direction.solid_angle};
+    smallest = std::min<double>(smallest, direction.solid_angle);
+    largest = std::max<double>(largest, direction.solid_angle);
+  }
+  EXPECT_NEAR(sum, 4 * std::numbers::pi, 1e-4);
+  EXPECT_LT(glm::length(mean), 1e-5);
+  EXPECT_LT(largest / smallest, 6);  // the octahedron's faces are larger at their middles
+}
+
+TEST_P(DirectionSet, HasExactAntipodes) {
+  const auto set = directions(GetParam());
+  for (std::size_t index = 0; index < set.size() / 2; ++index) {
+    EXPECT_EQ(set[index].along, -set[set.size() / 2 + index].along);
+    EXPECT_EQ(set[index].solid_angle, set[set.size() / 2 + index].solid_angle);
+  }
+}
+
+// E of a uniform sky is pi: the weights integrate the cosine. The error falls with the count.
+TEST_P(DirectionSet, IntegratesACosine) {
+  for (const glm::vec3 normal : {glm::vec3(0, 0, 1), glm::normalize(glm::vec3(1, 2, 3)), glm::vec3(0, 1, 0)}) {
+    double sum = 0;
+    for (const auto& direction : directions(GetParam()))
+      sum += std::max(0.0f, -glm::dot(normal, direction.along)) * direction.solid_angle;
+    EXPECT_NEAR(sum, std::numbers::pi, 3.0 / std::sqrt(GetParam()));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, DirectionSet, ::testing::ValuesIn(direction_counts().begin(), direction_counts().end()));
+
+TEST(Directions, OtherCountsAreRefusedWithTheList) {
+  for (const std::uint32_t count : {0u, 1u, 25u, 385u, 8192u}) {
+    try {
+      directions(count);
+      FAIL() << count << " was taken";
+    } catch (const std::invalid_argument& error) {
+      EXPECT_THAT(error.what(), HasSubstr("8, 24, 32, 96, 128, 384, 512, 1536, 2048, 6144"));
+    }
+  }
+}
+
+TEST(PsfView, IsOrthonormalAndScalesTheSphereToTheUnitSphere) {
+  const scene::Sphere sphere{{3, -2, 5}, 4};
+  for (const auto& direction : directions(96)) {
+    const auto view = psf_view(direction, sphere);
+    const glm::vec3 right = glm::vec3(view.right) * sphere.radius, up = glm::vec3(view.up) * sphere.radius,
+                    along = glm::vec3(view.along) * sphere.radius;
+    EXPECT_LT(glm::distance(along, direction.along), 1e-6);
+    EXPECT_LT(glm::distance(glm::cross(right, up), along), 1e-5);
+    EXPECT_NEAR(glm::dot(view.along, glm::vec4(sphere.centre, 1)), 0, 1e-6);
+    const glm::vec3 rim = sphere.centre + sphere.radius * right;
+    EXPECT_NEAR(glm::dot(view.right, glm::vec4(rim, 1)), 1, 1e-6);
+    EXPECT_NEAR(glm::dot(view.up, glm::vec4(rim, 1)), 0, 1e-6);
+  }
+}
+
+}  // namespace
+}  // namespace lichtveld::lightfield
