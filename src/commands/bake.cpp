@@ -45,6 +45,7 @@ NodeMove parse_move(const std::string& text, const scene::Scene& scene) {
 }
 
 void bake(const BakeOptions& options) {
+  lightfield::check(options.settings);
   const auto scene = scene::load(options.scene);
   scene::check_atlas(scene, options.settings.size);
   std::vector<NodeMove> moves;
@@ -77,9 +78,10 @@ void bake(const BakeOptions& options) {
   if (!options.png.empty())
     write_bytes(options.png, stream::encode_png(method.presented(), options.settings.size));
   if (!options.report.empty())
-    write_text(options.report, report(device, options.settings, solution, method.times(), total.count()).dump(2) + "\n");
-  spdlog::info("{}: {} texels, {} bounces, {:.0f} ms on {}", options.out, solution.texels_valid, solution.bounces,
-               total.count(), device.summary().name);
+    write_text(options.report,
+               report(device, options.settings, solution, method.times(), total.count()).dump(2) + "\n");
+  spdlog::info("{}: {} texels, {} bounces, {:.0f} ms on {}", options.out, solution.texels_valid,
+               solution.bounces, total.count(), device.summary().name);
 }
 
 }  // namespace
@@ -91,13 +93,18 @@ void add_bake(CLI::App& application) {
   command->add_option("--out", options->out, "Irradiance [W/m2]: float32 RGBA, A = 1 on valid texels")
       ->required()
       ->type_name("E.exr");
-  command->add_option("--png", options->png, "What players see: tone-mapped radiance, sRGB")->type_name("map.png");
-  command->add_option("--report", options->report, "Device, times, memory, counts, as JSON")->type_name("r.json");
-  command->add_option("--move", options->moves, "Shift a movable node from its rest place, metres; repeats add up")
+  command->add_option("--png", options->png, "What players see: tone-mapped radiance, sRGB")
+      ->type_name("map.png");
+  command->add_option("--report", options->report, "Device, times, memory, counts, as JSON")
+      ->type_name("r.json");
+  command
+      ->add_option("--move", options->moves, "Shift a movable node from its rest place, metres; repeats add up")
       ->type_name("NODE=dx,dy,dz")
       ->allow_extra_args(false);
-  command->add_flag("--live", options->live, "First compute with all nodes at rest, then apply each move, as serve does");
-  command->add_option("--dump", options->dump, "Write the output of every pass there, as EXR")->type_name("DIR");
+  command->add_flag("--live", options->live,
+                    "First compute with all nodes at rest, then apply each move, as serve does");
+  command->add_option("--dump", options->dump, "Write the output of every pass there, as EXR")
+      ->type_name("DIR");
   command->add_option("--dump-psf", options->dump_psf, "The direction whose A-buffer and irradiance are dumped")
       ->capture_default_str();
   add_quality_options(*command, options->settings);

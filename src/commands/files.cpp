@@ -14,17 +14,21 @@ namespace fs = std::filesystem;
 void write_whole(const fs::path& file, const std::function<void(const fs::path&)>& write) {
   const auto folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
   if (!fs::is_directory(folder))
-    throw UsageError(file.string() + " cannot be written: " + folder.string() + " is not a folder; make it first");
-  if (fs::is_directory(file)) throw UsageError(file.string() + " cannot be written: it is a folder; name a file in it");
+    throw UsageError(file.string() + " cannot be written: " + folder.string() +
+                     " is not a folder; make it first");
+  if (fs::is_directory(file))
+    throw UsageError(file.string() + " cannot be written: it is a folder; name a file in it");
   fs::path temporary = file;
-  temporary.replace_filename("." + file.stem().string() + "." + std::to_string(getpid()) + file.extension().string());
+  temporary.replace_filename("." + file.stem().string() + "." + std::to_string(getpid()) +
+                             file.extension().string());
   try {
     write(temporary);
     fs::rename(temporary, file);
   } catch (const std::exception& error) {
     std::error_code ignored;
     fs::remove(temporary, ignored);
-    throw UsageError(file.string() + " cannot be written: " + error.what() + "; is there room, and may you write there?");
+    throw UsageError(file.string() + " cannot be written: " + error.what() +
+                     "; is there room, and may you write there?");
   }
 }
 
@@ -47,8 +51,8 @@ void write_exr(const fs::path& file, std::span<const glm::vec4> pixels, std::uin
     const auto side = static_cast<int>(size);
     OIIO::ImageSpec spec(side, side, 4, OIIO::TypeDesc::FLOAT);
     const auto out = OIIO::ImageOutput::create(file.extension() == ".exr" ? file.string() : "x.exr");
-    if (!out || !out->open(temporary.string(), spec) || !out->write_image(OIIO::TypeDesc::FLOAT, pixels.data()) ||
-        !out->close())
+    if (!out || !out->open(temporary.string(), spec) ||
+        !out->write_image(OIIO::TypeDesc::FLOAT, pixels.data()) || !out->close())
       throw std::runtime_error(out ? out->geterror() : OIIO::geterror());
   });
 }

@@ -10,9 +10,10 @@
 
 namespace lichtveld::commands {
 
-// Calls write(temporary), then renames the temporary file to `file`; removes it if either fails. The temporary keeps the
-// extension. Throws UsageError if the folder is not there or cannot be written to.
-void write_whole(const std::filesystem::path& file, const std::function<void(const std::filesystem::path&)>& write);
+// Calls write(temporary), then renames the temporary file to `file`; removes it if either fails. The temporary
+// keeps the extension. Throws UsageError if the folder is not there or cannot be written to.
+void write_whole(const std::filesystem::path& file,
+                 const std::function<void(const std::filesystem::path&)>& write);
 
 void write_bytes(const std::filesystem::path& file, std::span<const std::uint8_t> bytes);
 void write_text(const std::filesystem::path& file, const std::string& text);

@@ -24,8 +24,8 @@ std::string key_of(const std::map<std::string, Value>& names, Value wanted) {
 
 // An option whose values are the keys of `names`.
 template <typename Value>
-void add_choice(CLI::App& command, const std::string& option, Value& value, const std::map<std::string, Value>& names,
-                const std::string& help) {
+void add_choice(CLI::App& command, const std::string& option, Value& value,
+                const std::map<std::string, Value>& names, const std::string& help) {
   std::string choices;
   for (const auto& [name, unused] : names) choices += (choices.empty() ? "" : "|") + name;
   command
@@ -45,12 +45,14 @@ void add_choice(CLI::App& command, const std::string& option, Value& value, cons
 
 void add_device_options(CLI::App& command, gpu::DeviceOptions& options) {
   command
-      .add_option("--device", options.device,
-                  "The Vulkan device: a number of `lichtveld info` or a part of its name (default: a GPU before a CPU)")
+      .add_option(
+          "--device", options.device,
+          "The Vulkan device: a number of `lichtveld info` or a part of its name (default: a GPU before a CPU)")
       ->envname("LICHTVELD_DEVICE");
   command
-      .add_flag("--validation", options.validation,
-                "Run under the Vulkan validation layers, synchronization validation too; any message is an error")
+      .add_flag(
+          "--validation", options.validation,
+          "Run under the Vulkan validation layers, synchronization validation too; any message is an error")
       ->envname("LICHTVELD_VALIDATION");
 }
 
@@ -74,17 +76,22 @@ void add_method_options(CLI::App& command, lightfield::Settings& settings) {
       ->type_name("thesis")
       ->default_str("thesis");
   add_choice(command, "--abuffer", settings.abuffer, abuffers,
-             "How a PSF keeps all its layers: routed by the stencil to the samples of a pixel, or in a list of each pixel");
+             "How a PSF keeps all its layers: routed by the stencil to the samples of a pixel, or in a list of "
+             "each pixel");
   add_choice(command, "--sort", settings.sort, sorts,
              "How a texel finds its layer: sorting them, or scanning for the nearest in front");
-  command.add_option("--layers", settings.layers,
-                     "Layers that a PSF pixel keeps, 1..128; pixels with more are counted, and room is made for them")
+  command
+      .add_option(
+          "--layers", settings.layers,
+          "Layers that a PSF pixel keeps, 1..128; pixels with more are counted, and room is made for them")
       ->capture_default_str();
 }
 
 void add_quality_options(CLI::App& command, lightfield::Settings& settings) {
-  command.add_option("--size", settings.size, "Texels a side of the light map, 16..4096")->capture_default_str();
-  command.add_option("--psf", settings.psf, "Directions: " + lightfield::direction_counts_text())->capture_default_str();
+  command.add_option("--size", settings.size, "Texels a side of the light map, 16..4096")
+      ->capture_default_str();
+  command.add_option("--psf", settings.psf, "Directions: " + lightfield::direction_counts_text())
+      ->capture_default_str();
 }
 
 void add_bounces_option(CLI::App& command, lightfield::Settings& settings) {
@@ -99,12 +106,17 @@ void add_bounces_option(CLI::App& command, lightfield::Settings& settings) {
               throw UsageError("--bounces " + text + ": a number from 1 (direct light), or auto");
             settings.bounces = bounces;
           },
-          "Path segments up to a texel: 1 is direct light; auto: until less than 0.1 % of the mean can be missing")
+          "Path segments up to a texel: 1 is direct light; auto: until less than 0.1 % of the mean can be "
+          "missing")
       ->type_name("auto|N")
       ->default_str(settings.bounces ? std::to_string(*settings.bounces) : "auto");
 }
 
-std::string name_of(ABuffer abuffer) { return key_of(abuffers, abuffer); }
-std::string name_of(Sort sort) { return key_of(sorts, sort); }
+std::string name_of(ABuffer abuffer) {
+  return key_of(abuffers, abuffer);
+}
+std::string name_of(Sort sort) {
+  return key_of(sorts, sort);
+}
 
 }  // namespace lichtveld::commands

@@ -23,7 +23,8 @@ void add_device_options(CLI::App& command, gpu::DeviceOptions& options);
 // Throws std::runtime_error if the validation layers complained: a programmer's error must not pass unseen.
 void check_validation(const gpu::Device& device);
 
-// --method, --abuffer, --sort, --layers: how to compute, whatever the quality. --method is checked against what there is.
+// --method, --abuffer, --sort, --layers: how to compute, whatever the quality. --method is checked against what
+// there is.
 void add_method_options(CLI::App& command, lightfield::Settings& settings);
 
 // --size, --psf.

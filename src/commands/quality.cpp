@@ -15,7 +15,8 @@ struct Quality {
 };
 
 // Each step costs about four times the one before.
-constexpr std::array<Quality, 6> coarse_to_fine = {{{64, 24}, {64, 96}, {128, 96}, {128, 384}, {256, 384}, {256, 1536}}};
+constexpr std::array<Quality, 6> coarse_to_fine = {
+    {{64, 24}, {64, 96}, {128, 96}, {128, 384}, {256, 384}, {256, 1536}}};
 
 std::chrono::duration<double, std::milli> time_of(const gpu::Device& device, const scene::Scene& scene,
                                                   const lightfield::Settings& settings) {

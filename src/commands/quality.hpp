@@ -9,8 +9,8 @@
 
 namespace lichtveld::commands {
 
-// Times light maps from coarse to fine on this device and returns `settings` with the size and PSFs of the finest one
-// that takes at most `budget`; the coarsest one if none does.
+// Times light maps from coarse to fine on this device and returns `settings` with the size and PSFs of the
+// finest one that takes at most `budget`; the coarsest one if none does.
 lightfield::Settings finest_within(std::chrono::milliseconds budget, const gpu::Device& device,
                                    const scene::Scene& scene, lightfield::Settings settings);
 

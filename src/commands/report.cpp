@@ -5,7 +5,8 @@
 namespace lichtveld::commands {
 
 nlohmann::ordered_json report(const gpu::Device& device, const lightfield::Settings& settings,
-                              const lightfield::Solution& solution, const gpu::PassTimes& times, double total_ms) {
+                              const lightfield::Solution& solution, const gpu::PassTimes& times,
+                              double total_ms) {
   nlohmann::ordered_json passes, memory;
   for (const auto& [name, time] : times) passes[name] = {{"calls", time.calls}, {"gpu_ms", time.gpu_ms}};
   std::uint64_t total_bytes = 0;

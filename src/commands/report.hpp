@@ -9,6 +9,7 @@
 namespace lichtveld::commands {
 
 nlohmann::ordered_json report(const gpu::Device& device, const lightfield::Settings& settings,
-                              const lightfield::Solution& solution, const gpu::PassTimes& times, double total_ms);
+                              const lightfield::Solution& solution, const gpu::PassTimes& times,
+                              double total_ms);
 
 }  // namespace lichtveld::commands

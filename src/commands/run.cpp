@@ -48,6 +48,7 @@ int run(int argc, char** argv) {
   application.set_help_all_flag("--help-all", "The help of every command");
   add_bake(application);
   add_serve(application);
+  add_bench(application);
   add_info(application);
   return parse_and_run(application, argc, argv);
 }

@@ -31,7 +31,8 @@ struct ServeOptions {
   double rate = 30;
   bool chosen_quality = false;
   gpu::DeviceOptions device;
-  lightfield::Settings settings{.bounces = 2, .abuffer = lightfield::ABuffer::list, .sort = lightfield::Sort::scan};
+  lightfield::Settings settings{
+      .bounces = 2, .abuffer = lightfield::ABuffer::list, .sort = lightfield::Sort::scan};
 };
 
 std::string read_token(const std::string& file) {
@@ -86,7 +87,9 @@ class RenderLoop {
 };
 
 void serve(ServeOptions options) {
-  if (!(options.rate > 0 && options.rate <= 1000)) throw UsageError("--rate: maps a second, above 0 and up to 1000");
+  if (!(options.rate > 0 && options.rate <= 1000))
+    throw UsageError("--rate: maps a second, above 0 and up to 1000");
+  lightfield::check(options.settings);
   PlaceInbox inbox;
   const StopSignals signals([&] { inbox.stop(); });
   const auto scene = scene::load(options.scene);
@@ -106,8 +109,8 @@ void serve(ServeOptions options) {
                                            stream::Move move) { return moved(scene, cube, places, move); },
                          .places_changed = [&inbox](const Places& places) { inbox.put(places); }});
   loop.render(rest, server);
-  spdlog::info("serving {}: --size {} --psf {} on {}", options.scene, options.settings.size, options.settings.psf,
-               device.summary().name);
+  spdlog::info("serving {}: --size {} --psf {} on {}", options.scene, options.settings.size,
+               options.settings.psf, device.summary().name);
 
   const std::chrono::duration<double> shortest(1 / options.rate);
   while (!inbox.stopped() && server.refused().empty()) {
@@ -119,8 +122,8 @@ void serve(ServeOptions options) {
   }
   if (const auto why = server.refused(); !why.empty()) throw UsageError(why);
   const auto totals = server.statistics();
-  spdlog::info("stopped: {} maps and {} MiB sent, {} maps skipped by slow clients, {} messages refused", totals.maps_sent,
-               totals.bytes_sent >> 20, totals.maps_skipped, totals.messages_refused);
+  spdlog::info("stopped: {} maps and {} MiB sent, {} maps skipped by slow clients, {} messages refused",
+               totals.maps_sent, totals.bytes_sent >> 20, totals.maps_skipped, totals.messages_refused);
   check_validation(device);
 }
 
@@ -130,8 +133,10 @@ void add_serve(CLI::App& application) {
   auto* command = application.add_subcommand("serve", "Light a room for players: the render server");
   const auto options = std::make_shared<ServeOptions>();
   command->add_option("--scene", options->scene, "The scene, .glb or .gltf")->required();
-  command->add_option("--signaling", options->signaling, "The signaling server, ws://HOST:PORT/server")->required();
-  command->add_option("--token-file", options->token_file, "A file with the token that signaling knows")->required();
+  command->add_option("--signaling", options->signaling, "The signaling server, ws://HOST:PORT/server")
+      ->required();
+  command->add_option("--token-file", options->token_file, "A file with the token that signaling knows")
+      ->required();
   command->add_option("--bind", options->bind, "The address that WebRTC binds to (default: every address)");
   command->add_option("--rate", options->rate, "Most light maps a second")->capture_default_str();
   add_quality_options(*command, options->settings);

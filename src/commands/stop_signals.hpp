@@ -7,8 +7,8 @@
 
 namespace lichtveld::commands {
 
-// While it lives, the first SIGINT or SIGTERM calls `stop` on a thread of its own. Make it before any other thread, so
-// that all of them inherit the blocked signals.
+// While it lives, the first SIGINT or SIGTERM calls `stop` on a thread of its own. Make it before any other
+// thread, so that all of them inherit the blocked signals.
 class StopSignals {
  public:
   explicit StopSignals(std::function<void()> stop) {

@@ -23,23 +23,26 @@ vk::raii::Instance make_instance(const vk::raii::Context& context, bool validati
   for (const auto& extension : context.enumerateInstanceExtensionProperties())
     if (std::strcmp(extension.extensionName, VK_EXT_DEBUG_UTILS_EXTENSION_NAME) == 0)
       extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
-  const vk::ValidationFeatureEnableEXT synchronization = vk::ValidationFeatureEnableEXT::eSynchronizationValidation;
+  const vk::ValidationFeatureEnableEXT synchronization =
+      vk::ValidationFeatureEnableEXT::eSynchronizationValidation;
   const vk::ValidationFeaturesEXT features{.enabledValidationFeatureCount = 1,
                                            .pEnabledValidationFeatures = &synchronization};
   if (validation) {
     const auto available = context.enumerateInstanceLayerProperties();
     if (std::none_of(available.begin(), available.end(),
                      [](const auto& layer) { return std::strcmp(layer.layerName, validation_layer) == 0; }))
-      throw NoDevice("validation was asked for, but the Khronos validation layer is not installed; "
-                     "install the package vulkan-validationlayers or leave --validation out");
+      throw NoDevice(
+          "validation was asked for, but the Khronos validation layer is not installed; "
+          "install the package vulkan-validationlayers or leave --validation out");
     layers.push_back(validation_layer);
   }
-  return {context, vk::InstanceCreateInfo{.pNext = validation ? &features : nullptr,
-                                          .pApplicationInfo = &application,
-                                          .enabledLayerCount = static_cast<std::uint32_t>(layers.size()),
-                                          .ppEnabledLayerNames = layers.data(),
-                                          .enabledExtensionCount = static_cast<std::uint32_t>(extensions.size()),
-                                          .ppEnabledExtensionNames = extensions.data()}};
+  return {context,
+          vk::InstanceCreateInfo{.pNext = validation ? &features : nullptr,
+                                 .pApplicationInfo = &application,
+                                 .enabledLayerCount = static_cast<std::uint32_t>(layers.size()),
+                                 .ppEnabledLayerNames = layers.data(),
+                                 .enabledExtensionCount = static_cast<std::uint32_t>(extensions.size()),
+                                 .ppEnabledExtensionNames = extensions.data()}};
 }
 
 std::string missing_features(const vk::raii::PhysicalDevice& physical) {
@@ -52,7 +55,8 @@ std::string missing_features(const vk::raii::PhysicalDevice& physical) {
     want(std::any_of(extensions.begin(), extensions.end(),
                      [&](const auto& extension) { return std::strcmp(extension.extensionName, wanted) == 0; }),
          wanted);
-  const auto features = physical.getFeatures2<vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceVulkan13Features>();
+  const auto features =
+      physical.getFeatures2<vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceVulkan13Features>();
   const auto& core = features.get<vk::PhysicalDeviceFeatures2>().features;
   const auto& newer = features.get<vk::PhysicalDeviceVulkan13Features>();
   want(core.fragmentStoresAndAtomics, "fragmentStoresAndAtomics");
@@ -68,9 +72,9 @@ DeviceSummary summarise(const vk::raii::PhysicalDevice& physical) {
   const auto& properties = chain.get<vk::PhysicalDeviceProperties2>().properties;
   const auto& driver = chain.get<vk::PhysicalDeviceDriverProperties>();
   const auto& limits = properties.limits;
-  const auto samples = static_cast<std::uint32_t>(
-      static_cast<VkSampleCountFlags>(limits.framebufferColorSampleCounts & limits.framebufferStencilSampleCounts &
-                                      limits.sampledImageColorSampleCounts & limits.sampledImageStencilSampleCounts));
+  const auto samples = static_cast<std::uint32_t>(static_cast<VkSampleCountFlags>(
+      limits.framebufferColorSampleCounts & limits.framebufferStencilSampleCounts &
+      limits.sampledImageColorSampleCounts & limits.sampledImageStencilSampleCounts));
   DeviceSummary summary;
   summary.name = properties.deviceName.data();
   summary.type = vk::to_string(properties.deviceType);
@@ -88,10 +92,14 @@ DeviceSummary summarise(const vk::raii::PhysicalDevice& physical) {
 
 int rank(vk::PhysicalDeviceType type) {
   switch (type) {
-    case vk::PhysicalDeviceType::eDiscreteGpu: return 0;
-    case vk::PhysicalDeviceType::eIntegratedGpu: return 1;
-    case vk::PhysicalDeviceType::eVirtualGpu: return 2;
-    default: return 3;
+    case vk::PhysicalDeviceType::eDiscreteGpu:
+      return 0;
+    case vk::PhysicalDeviceType::eIntegratedGpu:
+      return 1;
+    case vk::PhysicalDeviceType::eVirtualGpu:
+      return 2;
+    default:
+      return 3;
   }
 }
 
@@ -116,14 +124,17 @@ vk::raii::PhysicalDevice choose(const vk::raii::Instance& instance, const std::s
     const DeviceSummary summary = summarise(devices[index]);
     if (matches(summary, index, wanted)) {
       if (summary.missing.empty()) return std::move(devices[index]);
-      throw NoDevice("device " + summary.name + " lacks " + summary.missing + "; try another one with --device");
+      throw NoDevice("device " + summary.name + " lacks " + summary.missing +
+                     "; try another one with --device");
     }
-    found += "\n  " + std::to_string(index) + ": " + summary.name + (summary.missing.empty() ? "" : " lacks " + summary.missing);
+    found += "\n  " + std::to_string(index) + ": " + summary.name +
+             (summary.missing.empty() ? "" : " lacks " + summary.missing);
   }
   if (devices.empty())
     throw NoDevice("no Vulkan device: install a driver (mesa-vulkan-drivers has lavapipe, which needs no GPU)");
   throw NoDevice((wanted.empty() ? "no Vulkan device here has all that is needed:"
-                                 : "no Vulkan device matches --device " + wanted + "; there are:") + found);
+                                 : "no Vulkan device matches --device " + wanted + "; there are:") +
+                 found);
 }
 
 std::uint32_t graphics_family(const vk::raii::PhysicalDevice& physical) {
@@ -131,21 +142,25 @@ std::uint32_t graphics_family(const vk::raii::PhysicalDevice& physical) {
   const auto wanted = vk::QueueFlagBits::eGraphics | vk::QueueFlagBits::eCompute;
   for (std::uint32_t index = 0; index < families.size(); ++index)
     if ((families[index].queueFlags & wanted) == wanted) return index;
-  throw NoDevice(std::string(physical.getProperties().deviceName.data()) + " has no queue for graphics and compute");
+  throw NoDevice(std::string(physical.getProperties().deviceName.data()) +
+                 " has no queue for graphics and compute");
 }
 
 vk::raii::Device make_device(const vk::raii::PhysicalDevice& physical, std::uint32_t family) {
   const float priority = 1;
-  const vk::DeviceQueueCreateInfo queue{.queueFamilyIndex = family, .queueCount = 1, .pQueuePriorities = &priority};
+  const vk::DeviceQueueCreateInfo queue{
+      .queueFamilyIndex = family, .queueCount = 1, .pQueuePriorities = &priority};
   const vk::PhysicalDeviceFeatures core{.fragmentStoresAndAtomics = true};
-  const vk::PhysicalDeviceVulkan13Features newer{.synchronization2 = true, .dynamicRendering = true, .maintenance4 = true};
+  const vk::PhysicalDeviceVulkan13Features newer{
+      .synchronization2 = true, .dynamicRendering = true, .maintenance4 = true};
   const vk::PhysicalDeviceFeatures2 features{.pNext = const_cast<vk::PhysicalDeviceVulkan13Features*>(&newer),
                                              .features = core};
-  return {physical, vk::DeviceCreateInfo{.pNext = &features,
-                                         .queueCreateInfoCount = 1,
-                                         .pQueueCreateInfos = &queue,
-                                         .enabledExtensionCount = static_cast<std::uint32_t>(device_extensions.size()),
-                                         .ppEnabledExtensionNames = device_extensions.data()}};
+  return {physical,
+          vk::DeviceCreateInfo{.pNext = &features,
+                               .queueCreateInfoCount = 1,
+                               .pQueueCreateInfos = &queue,
+                               .enabledExtensionCount = static_cast<std::uint32_t>(device_extensions.size()),
+                               .ppEnabledExtensionNames = device_extensions.data()}};
 }
 
 }  // namespace
@@ -162,7 +177,9 @@ std::vector<DeviceSummary> list_devices() {
   return summaries;
 }
 
-void MemoryLedger::add(const std::string& name, std::uint64_t bytes) { bytes_[name] += bytes; }
+void MemoryLedger::add(const std::string& name, std::uint64_t bytes) {
+  bytes_[name] += bytes;
+}
 
 void MemoryLedger::remove(const std::string& name, std::uint64_t bytes) {
   const auto entry = bytes_.find(name);
@@ -184,8 +201,8 @@ Device::Device(const DeviceOptions& options) {
     const auto family = graphics_family(physical_);
     device_ = make_device(physical_, family);
     queue_ = device_.getQueue(family, 0);
-    commands_ = vk::raii::CommandPool(device_, {.flags = vk::CommandPoolCreateFlagBits::eTransient,
-                                                .queueFamilyIndex = family});
+    commands_ = vk::raii::CommandPool(
+        device_, {.flags = vk::CommandPoolCreateFlagBits::eTransient, .queueFamilyIndex = family});
   } catch (const vk::SystemError& error) {
     throw NoDevice(std::string("no Vulkan device can be used (") + error.what() +
                    "): install a driver (mesa-vulkan-drivers has lavapipe, which needs no GPU)");

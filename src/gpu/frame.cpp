@@ -18,16 +18,18 @@ void push_descriptors(const vk::raii::CommandBuffer& commands, const Pipeline& p
   std::vector<vk::DescriptorImageInfo> images(bindings.size());
   std::vector<vk::DescriptorBufferInfo> buffers(bindings.size());
   std::vector<vk::WriteDescriptorSet> writes;
-  constexpr vk::DescriptorType types[] = {vk::DescriptorType::eCombinedImageSampler, vk::DescriptorType::eStorageImage,
+  constexpr vk::DescriptorType types[] = {vk::DescriptorType::eCombinedImageSampler,
+                                          vk::DescriptorType::eStorageImage,
                                           vk::DescriptorType::eStorageBuffer};
   for (std::uint32_t index = 0; index < bindings.size(); ++index) {
     const Binding& binding = bindings[index];
     assert(binding.kind == pipeline.kinds()[index]);
     if (binding.image != nullptr)
       images[index] = vk::DescriptorImageInfo{.sampler = binding.sampler,
-                       .imageView = binding.image->view(),
-                       .imageLayout = binding.kind == Kind::sampled_image ? vk::ImageLayout::eShaderReadOnlyOptimal
-                                                                          : vk::ImageLayout::eGeneral};
+                                              .imageView = binding.image->view(),
+                                              .imageLayout = binding.kind == Kind::sampled_image
+                                                                 ? vk::ImageLayout::eShaderReadOnlyOptimal
+                                                                 : vk::ImageLayout::eGeneral};
     else
       buffers[index] = vk::DescriptorBufferInfo{.buffer = binding.buffer->handle(), .range = VK_WHOLE_SIZE};
     writes.push_back({.dstBinding = index,
@@ -83,10 +85,18 @@ Wait advance(UseState& state, vk::PipelineStageFlags2 stages, vk::AccessFlags2 a
 Binding sampled(const Image& image, const vk::raii::Sampler& sampler) {
   return {.kind = Kind::sampled_image, .image = &image, .sampler = *sampler};
 }
-Binding reads(const Image& image) { return {.kind = Kind::storage_image, .image = &image}; }
-Binding writes(const Image& image) { return {.kind = Kind::storage_image, .image = &image, .writes = true}; }
-Binding reads(const Buffer& buffer) { return {.kind = Kind::storage_buffer, .buffer = &buffer}; }
-Binding writes(const Buffer& buffer) { return {.kind = Kind::storage_buffer, .buffer = &buffer, .writes = true}; }
+Binding reads(const Image& image) {
+  return {.kind = Kind::storage_image, .image = &image};
+}
+Binding writes(const Image& image) {
+  return {.kind = Kind::storage_image, .image = &image, .writes = true};
+}
+Binding reads(const Buffer& buffer) {
+  return {.kind = Kind::storage_buffer, .buffer = &buffer};
+}
+Binding writes(const Buffer& buffer) {
+  return {.kind = Kind::storage_buffer, .buffer = &buffer, .writes = true};
+}
 
 void Draw::bind(const GraphicsPipeline& pipeline, const std::vector<Binding>& bindings) {
   commands_.bindPipeline(vk::PipelineBindPoint::eGraphics, pipeline.handle());
@@ -111,7 +121,9 @@ void Draw::indexed(std::uint32_t first, std::uint32_t count) {
   if (count > 0) commands_.drawIndexed(count, 1, first, 0, 0);
 }
 
-void Draw::full_screen_triangle() { commands_.draw(3, 1, 0, 0); }
+void Draw::full_screen_triangle() {
+  commands_.draw(3, 1, 0, 0);
+}
 
 Frame::Frame(const Device& device, PassTimes& times) : device_(device), times_(times) {
   commands_ = std::move(vk::raii::CommandBuffers(device.handle(), {.commandPool = *device.commands(),
@@ -141,7 +153,8 @@ void Frame::pass(const std::string& name, const std::function<void()>& record) {
 }
 
 void Frame::compute_bytes(const ComputePipeline& pipeline, const std::vector<Binding>& bindings,
-                          std::span<const std::byte> constants, std::uint32_t groups_x, std::uint32_t groups_y) {
+                          std::span<const std::byte> constants, std::uint32_t groups_x,
+                          std::uint32_t groups_y) {
   for (const Binding& binding : bindings) use(binding, Stage::eComputeShader);
   pass(pipeline.name(), [&] {
     commands_.bindPipeline(vk::PipelineBindPoint::eCompute, pipeline.handle());
@@ -159,8 +172,9 @@ void Frame::render(const std::string& name, const Target& target, const std::vec
     use(*input, {Stage::eVertexInput, AccessBit::eVertexAttributeRead | AccessBit::eIndexRead});
   std::vector<vk::RenderingAttachmentInfo> colours;
   for (const Attachment& colour : target.colours) {
-    use(*colour.image, {Stage::eColorAttachmentOutput, AccessBit::eColorAttachmentRead | AccessBit::eColorAttachmentWrite,
-                        vk::ImageLayout::eColorAttachmentOptimal, true});
+    use(*colour.image,
+        {Stage::eColorAttachmentOutput, AccessBit::eColorAttachmentRead | AccessBit::eColorAttachmentWrite,
+         vk::ImageLayout::eColorAttachmentOptimal, true});
     colours.push_back(attachment_info(colour, vk::ImageLayout::eColorAttachmentOptimal));
   }
   vk::RenderingAttachmentInfo stencil;
@@ -209,7 +223,8 @@ void Frame::copy(const std::string& name, const Buffer& from, const Buffer& to) 
 
 namespace {
 vk::BufferImageCopy whole(const Image& image) {
-  return {.imageSubresource = {image.aspect(), 0, 0, 1}, .imageExtent = {image.shape().width, image.shape().height, 1}};
+  return {.imageSubresource = {image.aspect(), 0, 0, 1},
+          .imageExtent = {image.shape().width, image.shape().height, 1}};
 }
 }  // namespace
 
@@ -229,14 +244,18 @@ void Frame::copy(const std::string& name, const Buffer& from, const Image& to) {
   });
 }
 
-void Frame::to_host(const Buffer& buffer) { use(buffer, {Stage::eHost, AccessBit::eHostRead}); }
+void Frame::to_host(const Buffer& buffer) {
+  use(buffer, {Stage::eHost, AccessBit::eHostRead});
+}
 
 void Frame::use(const Binding& binding, vk::PipelineStageFlags2 stages) {
-  const auto read = binding.kind == Kind::sampled_image ? AccessBit::eShaderSampledRead : AccessBit::eShaderStorageRead;
+  const auto read =
+      binding.kind == Kind::sampled_image ? AccessBit::eShaderSampledRead : AccessBit::eShaderStorageRead;
   Access access{stages, read, vk::ImageLayout::eUndefined, binding.writes};
   if (binding.writes) access.access |= AccessBit::eShaderStorageWrite;
   if (binding.image != nullptr) {
-    access.layout = binding.kind == Kind::sampled_image ? vk::ImageLayout::eShaderReadOnlyOptimal : vk::ImageLayout::eGeneral;
+    access.layout = binding.kind == Kind::sampled_image ? vk::ImageLayout::eShaderReadOnlyOptimal
+                                                        : vk::ImageLayout::eGeneral;
     use(*binding.image, access);
   } else {
     use(*binding.buffer, access);
@@ -294,14 +313,16 @@ void Frame::submit_and_wait() {
   std::vector<std::uint64_t> ticks;
   for (std::size_t pool = 0; pool < queries_.size(); ++pool) {
     const auto used = std::min<std::size_t>(queries_a_pool, 2 * timed_.size() - pool * queries_a_pool);
-    const auto [result, values] = queries_[pool].getResults<std::uint64_t>(
-        0, static_cast<std::uint32_t>(used), used * 8, 8, vk::QueryResultFlagBits::e64 | vk::QueryResultFlagBits::eWait);
+    const auto [result, values] =
+        queries_[pool].getResults<std::uint64_t>(0, static_cast<std::uint32_t>(used), used * 8, 8,
+                                                 vk::QueryResultFlagBits::e64 | vk::QueryResultFlagBits::eWait);
     ticks.insert(ticks.end(), values.begin(), values.end());
   }
   for (const Timed& timed : timed_) {
     PassTime& time = times_[timed.pass];
     ++time.calls;
-    time.gpu_ms += static_cast<double>(ticks[timed.query + 1] - ticks[timed.query]) * device_.timestamp_period() * 1e-6;
+    time.gpu_ms +=
+        static_cast<double>(ticks[timed.query + 1] - ticks[timed.query]) * device_.timestamp_period() * 1e-6;
   }
 }
 

@@ -40,7 +40,8 @@ class Specialisation {
 
 }  // namespace
 
-Pipeline::Pipeline(const Device& device, std::string name, const Interface& interface, vk::PipelineBindPoint bind_point)
+Pipeline::Pipeline(const Device& device, std::string name, const Interface& interface,
+                   vk::PipelineBindPoint bind_point)
     : name_(std::move(name)), kinds_(interface.kinds), bind_point_(bind_point) {
   std::vector<vk::DescriptorSetLayoutBinding> bindings;
   for (std::uint32_t index = 0; index < kinds_.size(); ++index)
@@ -48,18 +49,20 @@ Pipeline::Pipeline(const Device& device, std::string name, const Interface& inte
                         .descriptorType = descriptor_types[static_cast<int>(kinds_[index])],
                         .descriptorCount = 1,
                         .stageFlags = stages_of(bind_point)});
-  set_layout_ = {device.handle(),
-                 vk::DescriptorSetLayoutCreateInfo{.flags = vk::DescriptorSetLayoutCreateFlagBits::ePushDescriptorKHR,
-                                                   .bindingCount = static_cast<std::uint32_t>(bindings.size()),
-                                                   .pBindings = bindings.data()}};
+  set_layout_ = {device.handle(), vk::DescriptorSetLayoutCreateInfo{
+                                      .flags = vk::DescriptorSetLayoutCreateFlagBits::ePushDescriptorKHR,
+                                      .bindingCount = static_cast<std::uint32_t>(bindings.size()),
+                                      .pBindings = bindings.data()}};
   const vk::PushConstantRange range{.stageFlags = stages_of(bind_point), .size = interface.push_bytes};
-  layout_ = {device.handle(), vk::PipelineLayoutCreateInfo{.setLayoutCount = 1,
-                                                           .pSetLayouts = &*set_layout_,
-                                                           .pushConstantRangeCount = interface.push_bytes > 0 ? 1u : 0u,
-                                                           .pPushConstantRanges = &range}};
+  layout_ = {device.handle(),
+             vk::PipelineLayoutCreateInfo{.setLayoutCount = 1,
+                                          .pSetLayouts = &*set_layout_,
+                                          .pushConstantRangeCount = interface.push_bytes > 0 ? 1u : 0u,
+                                          .pPushConstantRanges = &range}};
 }
 
-ComputePipeline::ComputePipeline(const Device& device, std::string name, Spirv shader, const Interface& interface)
+ComputePipeline::ComputePipeline(const Device& device, std::string name, Spirv shader,
+                                 const Interface& interface)
     : Pipeline(device, std::move(name), interface, vk::PipelineBindPoint::eCompute) {
   const auto module = make_module(device, shader);
   const Specialisation specialisation(interface.specialisation);
@@ -93,7 +96,8 @@ GraphicsPipeline::GraphicsPipeline(const Device& device, std::string name, Spirv
   const vk::VertexInputBindingDescription binding{.stride = state.vertex_stride};
   std::vector<vk::VertexInputAttributeDescription> attributes;
   for (const auto& attribute : state.attributes)
-    attributes.push_back({.location = attribute.location, .format = attribute.format, .offset = attribute.offset});
+    attributes.push_back(
+        {.location = attribute.location, .format = attribute.format, .offset = attribute.offset});
   const vk::PipelineVertexInputStateCreateInfo input{
       .vertexBindingDescriptionCount = state.vertex_stride > 0 ? 1u : 0u,
       .pVertexBindingDescriptions = &binding,
@@ -101,9 +105,11 @@ GraphicsPipeline::GraphicsPipeline(const Device& device, std::string name, Spirv
       .pVertexAttributeDescriptions = attributes.data()};
   const vk::PipelineInputAssemblyStateCreateInfo assembly{.topology = vk::PrimitiveTopology::eTriangleList};
   const vk::PipelineViewportStateCreateInfo viewport{.viewportCount = 1, .scissorCount = 1};
-  const vk::PipelineRasterizationStateCreateInfo raster{.cullMode = state.cull, .frontFace = state.front, .lineWidth = 1};
+  const vk::PipelineRasterizationStateCreateInfo raster{
+      .cullMode = state.cull, .frontFace = state.front, .lineWidth = 1};
   const vk::PipelineMultisampleStateCreateInfo multisample{
-      .rasterizationSamples = static_cast<vk::SampleCountFlagBits>(state.samples), .pSampleMask = &state.sample_mask};
+      .rasterizationSamples = static_cast<vk::SampleCountFlagBits>(state.samples),
+      .pSampleMask = &state.sample_mask};
   const bool stencil = state.stencil_format != vk::Format::eUndefined;
   const vk::PipelineDepthStencilStateCreateInfo depth_stencil{
       .stencilTestEnable = stencil, .front = state.stencil, .back = state.stencil};
@@ -112,8 +118,8 @@ GraphicsPipeline::GraphicsPipeline(const Device& device, std::string name, Spirv
                                          : vk::ColorComponentFlagBits::eR | vk::ColorComponentFlagBits::eG |
                                                vk::ColorComponentFlagBits::eB | vk::ColorComponentFlagBits::eA};
   const std::vector blends(state.colours.size(), write_all);
-  const vk::PipelineColorBlendStateCreateInfo blend{.attachmentCount = static_cast<std::uint32_t>(blends.size()),
-                                                    .pAttachments = blends.data()};
+  const vk::PipelineColorBlendStateCreateInfo blend{
+      .attachmentCount = static_cast<std::uint32_t>(blends.size()), .pAttachments = blends.data()};
   const vk::DynamicState dynamic_states[] = {vk::DynamicState::eViewport, vk::DynamicState::eScissor,
                                              vk::DynamicState::eStencilReference};
   const vk::PipelineDynamicStateCreateInfo dynamic{.dynamicStateCount = stencil ? 3u : 2u,

@@ -13,7 +13,8 @@ vk::raii::DeviceMemory allocate(const Device& device, const vk::MemoryRequiremen
                          : vk::MemoryPropertyFlags{vk::MemoryPropertyFlagBits::eDeviceLocal};
   try {
     vk::raii::DeviceMemory memory(
-        device.handle(), {.allocationSize = needs.size, .memoryTypeIndex = device.memory_type(needs.memoryTypeBits, flags)});
+        device.handle(),
+        {.allocationSize = needs.size, .memoryTypeIndex = device.memory_type(needs.memoryTypeBits, flags)});
     device.name(memory, name);
     return memory;
   } catch (const vk::OutOfDeviceMemoryError&) {
@@ -22,7 +23,9 @@ vk::raii::DeviceMemory allocate(const Device& device, const vk::MemoryRequiremen
   }
 }
 
-bool is_stencil(vk::Format format) { return format == vk::Format::eS8Uint || format == vk::Format::eD32SfloatS8Uint; }
+bool is_stencil(vk::Format format) {
+  return format == vk::Format::eS8Uint || format == vk::Format::eD32SfloatS8Uint;
+}
 
 }  // namespace
 
@@ -42,7 +45,8 @@ LedgerEntry& LedgerEntry::operator=(LedgerEntry&& other) noexcept {
   return *this;
 }
 
-Buffer::Buffer(const Device& device, std::string name, vk::DeviceSize bytes, vk::BufferUsageFlags usage, Memory where)
+Buffer::Buffer(const Device& device, std::string name, vk::DeviceSize bytes, vk::BufferUsageFlags usage,
+               Memory where)
     : name_(std::move(name)),
       bytes_(bytes),
       buffer_(device.handle(), vk::BufferCreateInfo{.size = bytes, .usage = usage}),
@@ -53,28 +57,31 @@ Buffer::Buffer(const Device& device, std::string name, vk::DeviceSize bytes, vk:
   if (where == Memory::host) mapped_ = memory_.mapMemory(0, VK_WHOLE_SIZE);
 }
 
-Image::Image(const Device& device, std::string name, ImageShape shape, vk::Format format, vk::ImageUsageFlags usage)
+Image::Image(const Device& device, std::string name, ImageShape shape, vk::Format format,
+             vk::ImageUsageFlags usage)
     : name_(std::move(name)),
       shape_(shape),
       format_(format),
       aspect_(is_stencil(format) ? vk::ImageAspectFlagBits::eStencil : vk::ImageAspectFlagBits::eColor),
-      image_(device.handle(), vk::ImageCreateInfo{.imageType = vk::ImageType::e2D,
-                                                  .format = format,
-                                                  .extent = {shape.width, shape.height, 1},
-                                                  .mipLevels = 1,
-                                                  .arrayLayers = shape.layers,
-                                                  .samples = static_cast<vk::SampleCountFlagBits>(shape.samples),
-                                                  .tiling = vk::ImageTiling::eOptimal,
-                                                  .usage = usage}),
+      image_(device.handle(),
+             vk::ImageCreateInfo{.imageType = vk::ImageType::e2D,
+                                 .format = format,
+                                 .extent = {shape.width, shape.height, 1},
+                                 .mipLevels = 1,
+                                 .arrayLayers = shape.layers,
+                                 .samples = static_cast<vk::SampleCountFlagBits>(shape.samples),
+                                 .tiling = vk::ImageTiling::eOptimal,
+                                 .usage = usage}),
       memory_(allocate(device, image_.getMemoryRequirements(), Memory::device, name_)),
       entry_(device.ledger(), name_, image_.getMemoryRequirements().size) {
   device.name(image_, name_);
   image_.bindMemory(*memory_, 0);
   const auto make_view = [&](vk::ImageViewType type, std::uint32_t first, std::uint32_t count) {
-    vk::raii::ImageView view(device.handle(), vk::ImageViewCreateInfo{.image = *image_,
-                                                                      .viewType = type,
-                                                                      .format = format_,
-                                                                      .subresourceRange = {aspect_, 0, 1, first, count}});
+    vk::raii::ImageView view(device.handle(),
+                             vk::ImageViewCreateInfo{.image = *image_,
+                                                     .viewType = type,
+                                                     .format = format_,
+                                                     .subresourceRange = {aspect_, 0, 1, first, count}});
     device.name(view, name_);
     return view;
   };

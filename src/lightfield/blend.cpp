@@ -10,12 +10,15 @@ Blend::Blend(const gpu::Device& device)
       bounce_(device, "blend", blend_bounce_comp, {.kinds = std::vector(3, gpu::Kind::storage_image)}) {}
 
 void Blend::psf_into_bounce(gpu::Frame& frame, const LightMap& map) const {
-  frame.compute(psf_, {gpu::reads(map.psf_irradiance), gpu::writes(map.bounce_irradiance)}, map.groups, map.groups);
+  frame.compute(psf_, {gpu::reads(map.psf_irradiance), gpu::writes(map.bounce_irradiance)}, map.groups,
+                map.groups);
 }
 
 void Blend::bounce_into_total(gpu::Frame& frame, const LightMap& map) const {
-  frame.compute(bounce_, {gpu::writes(map.bounce_irradiance), gpu::reads(map.position), gpu::writes(map.total_irradiance)},
-                map.groups, map.groups);
+  frame.compute(
+      bounce_,
+      {gpu::writes(map.bounce_irradiance), gpu::reads(map.position), gpu::writes(map.total_irradiance)},
+      map.groups, map.groups);
 }
 
 }  // namespace lichtveld::lightfield

@@ -1,6 +1,6 @@
 // blend: adds one direction's light to the bounce, and at a bounce's end makes it the total irradiance.
-// Thesis, section 4.6. E = pi * sum_k w_k L_k / sum_k w_k; dividing by the weights that were met makes every row of the
-// transport operator sum to one. Reads psf_irradiance, or bounce_irradiance; costs texels.
+// Thesis, section 4.6. E = pi * sum_k w_k L_k / sum_k w_k; dividing by the weights that were met makes every
+// row of the transport operator sum to one. Reads psf_irradiance, or bounce_irradiance; costs texels.
 #pragma once
 
 #include "light_map.hpp"

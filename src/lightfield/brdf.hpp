@@ -1,6 +1,6 @@
 // brdf: irradiance to what the next bounce emits, L = Le + albedo / pi * E.
-// Thesis, section 4.6. Reads source, albedo, emission, total_irradiance; writes radiance, gutters too, so that bilinear
-// sampling at a chart's edge finds the chart's own light. Costs texels.
+// Thesis, section 4.6. Reads source, albedo, emission, total_irradiance; writes radiance, gutters too, so that
+// bilinear sampling at a chart's edge finds the chart's own light. Costs texels.
 #pragma once
 
 #include "light_map.hpp"

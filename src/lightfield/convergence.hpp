@@ -1,13 +1,14 @@
 // How much light a solve may still miss: a bound from the last bounce's change.
 #pragma once
 
-#include "light_map.hpp"
 #include "lichtveld/lightfield/settings.hpp"
+#include "light_map.hpp"
 
 namespace lichtveld::lightfield {
 
-// A bounce multiplies what is missing by at most the largest albedo, because the rows of the transport operator sum to
-// one. After a bounce that changed E by at most r, what all later bounces still add is below r / (1 - max albedo).
+// A bounce multiplies what is missing by at most the largest albedo, because the rows of the transport operator
+// sum to one. After a bounce that changed E by at most r, what all later bounces still add is below r / (1 -
+// max albedo).
 class Convergence {
  public:
   // Reads the largest albedo and the valid texels of a map whose geometry_texture is drawn.
@@ -15,7 +16,8 @@ class Convergence {
 
   std::uint32_t texels_valid() const { return texels_valid_; }
 
-  // After a bounce: that bound as a share of E's mean, over the valid texels and channels. Infinite if an albedo is 1.
+  // After a bounce: that bound as a share of E's mean, over the valid texels and channels. Infinite if an
+  // albedo is 1.
   double measure(const gpu::Device& device, const LightMap& map);
 
  private:

@@ -48,7 +48,9 @@ struct Sampler {
 
 }  // namespace
 
-std::span<const std::uint32_t> direction_counts() { return counts; }
+std::span<const std::uint32_t> direction_counts() {
+  return counts;
+}
 
 std::string direction_counts_text() {
   std::string text;
@@ -58,17 +60,21 @@ std::string direction_counts_text() {
 
 std::vector<Direction> directions(std::uint32_t count) {
   if (std::find(counts.begin(), counts.end(), count) == counts.end())
-    throw std::invalid_argument(std::to_string(count) + " PSFs: the direction sets have " + direction_counts_text());
+    throw std::invalid_argument(std::to_string(count) + " PSFs: the direction sets have " +
+                                direction_counts_text());
   Sampler sampler{.three_a_triangle = count % 24 == 0, .found = {}};
   int depth = 0;
-  for (std::uint32_t triangles = sampler.three_a_triangle ? count / 24 : count / 8; triangles > 1; triangles /= 4) ++depth;
+  for (std::uint32_t triangles = sampler.three_a_triangle ? count / 24 : count / 8; triangles > 1;
+       triangles /= 4)
+    ++depth;
   // The octahedron's upper half; the lower is its mirror image through the centre.
   const Point top(0, 0, 1);
   const std::array<Point, 4> equator = {Point(1, 0, 0), Point(0, 1, 0), Point(-1, 0, 0), Point(0, -1, 0)};
   for (int side = 0; side < 4; ++side) sampler.subdivide(equator[side], equator[(side + 1) % 4], top, depth);
   auto& found = sampler.found;
   const auto half = found.size();
-  for (std::size_t index = 0; index < half; ++index) found.push_back({-found[index].along, found[index].solid_angle});
+  for (std::size_t index = 0; index < half; ++index)
+    found.push_back({-found[index].along, found[index].solid_angle});
   return std::move(found);
 }
 

@@ -19,20 +19,20 @@ constexpr auto layer_format = vk::Format::eR32G32B32A32Sfloat;
 constexpr auto stencil_format = vk::Format::eS8Uint;
 
 gpu::GraphicsState scene_state(const LayerStore& store, bool double_sided) {
-  gpu::GraphicsState state{
-      .vertex_stride = sizeof(scene::Vertex),
-      .attributes = {{0, vk::Format::eR32G32B32Sfloat, offsetof(scene::Vertex, position)},
-                     {2, vk::Format::eR32G32Sfloat, offsetof(scene::Vertex, atlas)},
-                     {4, vk::Format::eR32Uint, offsetof(scene::Vertex, body)}},
-      // A surface that faces the direction of travel is seen from its front; with up pointing down the raster, its
-      // counter-clockwise triangles turn clockwise.
-      .cull = double_sided ? vk::CullModeFlagBits::eNone : vk::CullModeFlagBits::eBack,
-      .front = vk::FrontFace::eClockwise};
+  gpu::GraphicsState state{.vertex_stride = sizeof(scene::Vertex),
+                           .attributes = {{0, vk::Format::eR32G32B32Sfloat, offsetof(scene::Vertex, position)},
+                                          {2, vk::Format::eR32G32Sfloat, offsetof(scene::Vertex, atlas)},
+                                          {4, vk::Format::eR32Uint, offsetof(scene::Vertex, body)}},
+                           // A surface that faces the direction of travel is seen from its front; with up
+                           // pointing down the raster, its counter-clockwise triangles turn clockwise.
+                           .cull = double_sided ? vk::CullModeFlagBits::eNone : vk::CullModeFlagBits::eBack,
+                           .front = vk::FrontFace::eClockwise};
   if (store.routed) {
     state.colours = {layer_format};
     state.stencil_format = stencil_format;
     state.samples = store.samples;
-    // Every fragment takes one off every sample it covers, whether it was written or not. Wrapping keeps the count.
+    // Every fragment takes one off every sample it covers, whether it was written or not. Wrapping keeps the
+    // count.
     state.stencil = {.failOp = vk::StencilOp::eDecrementAndWrap,
                      .passOp = vk::StencilOp::eDecrementAndWrap,
                      .depthFailOp = vk::StencilOp::eDecrementAndWrap,
@@ -80,17 +80,20 @@ LayerStore::LayerStore(const gpu::Device& device, const Settings& settings, std:
     const auto usage = vk::BufferUsageFlagBits::eStorageBuffer | vk::BufferUsageFlagBits::eTransferDst;
     const auto bytes = pixels * capacity * sizeof(glm::vec4);
     if (bytes > device.summary().max_storage_buffer)
-      throw std::runtime_error("an A-buffer of " + std::to_string(capacity) + " layers at " + std::to_string(size) +
-                               " pixels a side takes " + std::to_string(bytes >> 20) + " MiB, more than the device's " +
+      throw std::runtime_error("an A-buffer of " + std::to_string(capacity) + " layers at " +
+                               std::to_string(size) + " pixels a side takes " + std::to_string(bytes >> 20) +
+                               " MiB, more than the device's " +
                                std::to_string(device.summary().max_storage_buffer >> 20) +
                                " MiB for one buffer; try a smaller --size or --abuffer stencil");
     layers = std::make_unique<gpu::Buffer>(device, "lightfield/layers", bytes, usage);
-    filled = std::make_unique<gpu::Buffer>(device, "lightfield/layers_filled", pixels * sizeof(std::uint32_t), usage);
+    filled = std::make_unique<gpu::Buffer>(device, "lightfield/layers_filled", pixels * sizeof(std::uint32_t),
+                                           usage);
   } else {
     const gpu::ImageShape shape{
         .width = size, .height = size, .layers = capacity / samples, .samples = samples, .array = true};
-    routed = std::make_unique<gpu::Image>(device, "lightfield/layers", shape, layer_format,
-                                          vk::ImageUsageFlagBits::eColorAttachment | vk::ImageUsageFlagBits::eSampled);
+    routed = std::make_unique<gpu::Image>(
+        device, "lightfield/layers", shape, layer_format,
+        vk::ImageUsageFlagBits::eColorAttachment | vk::ImageUsageFlagBits::eSampled);
     stencil = std::make_unique<gpu::Image>(
         device, "lightfield/layers_stencil", gpu::ImageShape{.width = size, .height = size, .samples = samples},
         stencil_format, vk::ImageUsageFlagBits::eDepthStencilAttachment | vk::ImageUsageFlagBits::eSampled);
@@ -113,8 +116,9 @@ EmitRadiance::EmitRadiance(const gpu::Device& device, const LayerStore& store)
                                                        .addressModeV = vk::SamplerAddressMode::eClampToEdge}) {
   device.name(bilinear_, "lightfield/bilinear");
   const std::string name = "emit_radiance";
-  gpu::Interface interface{.kinds = {gpu::Kind::storage_buffer, gpu::Kind::sampled_image},
-                           .push_bytes = sizeof(shaders::EmitConstants)};
+  gpu::Interface interface {
+    .kinds = {gpu::Kind::storage_buffer, gpu::Kind::sampled_image}, .push_bytes = sizeof(shaders::EmitConstants)
+  };
   if (store.routed) {
     for (std::uint32_t sample = 0; sample < store.samples; ++sample)
       set_stencil_.emplace_back(device, name, full_screen_vert, gpu::Spirv{}, gpu::Interface{},
@@ -127,9 +131,10 @@ EmitRadiance::EmitRadiance(const gpu::Device& device, const LayerStore& store)
     interface.kinds.insert(interface.kinds.end(), 3, gpu::Kind::storage_buffer);
   }
   for (const bool double_sided : {false, true})
-    draw_.emplace_back(device, name, emit_radiance_vert,
-                       store.routed ? gpu::Spirv(emit_radiance_stencil_frag) : gpu::Spirv(emit_radiance_list_frag),
-                       interface, scene_state(store, double_sided));
+    draw_.emplace_back(
+        device, name, emit_radiance_vert,
+        store.routed ? gpu::Spirv(emit_radiance_stencil_frag) : gpu::Spirv(emit_radiance_list_frag), interface,
+        scene_state(store, double_sided));
 }
 
 void EmitRadiance::record(gpu::Frame& frame, const shaders::PsfView& view, const Geometry& geometry,
@@ -143,37 +148,39 @@ void EmitRadiance::record(gpu::Frame& frame, const shaders::PsfView& view, const
     record_list(frame, constants, geometry, map, store, counters);
 }
 
-void EmitRadiance::record_stencil(gpu::Frame& frame, const shaders::EmitConstants& constants, const Geometry& geometry,
-                                  const LightMap& map, const LayerStore& store, const gpu::Buffer& counters) const {
+void EmitRadiance::record_stencil(gpu::Frame& frame, const shaders::EmitConstants& constants,
+                                  const Geometry& geometry, const LightMap& map, const LayerStore& store,
+                                  const gpu::Buffer& counters) const {
   const std::vector bindings = {gpu::reads(geometry.offsets), gpu::sampled(map.radiance, bilinear_)};
   const vk::ClearValue no_layer(vk::ClearColorValue(std::array{0.0f, 0.0f, 0.0f, shaders::NO_LAYER}));
   const vk::ClearValue zero{vk::ClearDepthStencilValue{}};
   const std::uint32_t routed_passes = store.capacity / store.samples;
   // The last first, so that the stencil of routed pass 0 is there to be counted.
   for (std::uint32_t routed = routed_passes; routed-- > 0;) {
-    const gpu::Target target{
-        .extent = store.routed->extent(),
-        .colours = {{store.routed.get(), no_layer, routed}},
-        .stencil = gpu::Attachment{store.stencil.get(), zero}};
-    frame.render("emit_radiance", target, bindings, {&geometry.vertices, &geometry.indices}, [&](gpu::Draw& draw) {
-      for (std::uint32_t sample = 0; sample < store.samples; ++sample) {
-        draw.bind(set_stencil_[sample]);
-        draw.stencil_reference(routed * store.samples + sample + 1);
-        draw.full_screen_triangle();
-      }
-      draw.stencil_reference(1);
-      draw_scene(draw, constants, geometry, bindings);
-    });
+    const gpu::Target target{.extent = store.routed->extent(),
+                             .colours = {{store.routed.get(), no_layer, routed}},
+                             .stencil = gpu::Attachment{store.stencil.get(), zero}};
+    frame.render("emit_radiance", target, bindings, {&geometry.vertices, &geometry.indices},
+                 [&](gpu::Draw& draw) {
+                   for (std::uint32_t sample = 0; sample < store.samples; ++sample) {
+                     draw.bind(set_stencil_[sample]);
+                     draw.stencil_reference(routed * store.samples + sample + 1);
+                     draw.full_screen_triangle();
+                   }
+                   draw.stencil_reference(1);
+                   draw_scene(draw, constants, geometry, bindings);
+                 });
   }
   if (constants.count != 0) {
     const auto groups = (store.size + shaders::GROUP - 1) / shaders::GROUP;
-    frame.compute(count_.front(), {gpu::sampled(*store.stencil, store.fetch), gpu::writes(counters)}, constants, groups,
-                  groups);
+    frame.compute(count_.front(), {gpu::sampled(*store.stencil, store.fetch), gpu::writes(counters)}, constants,
+                  groups, groups);
   }
 }
 
-void EmitRadiance::record_list(gpu::Frame& frame, const shaders::EmitConstants& constants, const Geometry& geometry,
-                               const LightMap& map, const LayerStore& store, const gpu::Buffer& counters) const {
+void EmitRadiance::record_list(gpu::Frame& frame, const shaders::EmitConstants& constants,
+                               const Geometry& geometry, const LightMap& map, const LayerStore& store,
+                               const gpu::Buffer& counters) const {
   frame.clear("emit_radiance", *store.filled);
   const std::vector bindings = {gpu::reads(geometry.offsets), gpu::sampled(map.radiance, bilinear_),
                                 gpu::writes(*store.filled), gpu::writes(*store.layers), gpu::writes(counters)};
@@ -182,8 +189,8 @@ void EmitRadiance::record_list(gpu::Frame& frame, const shaders::EmitConstants& 
                [&](gpu::Draw& draw) { draw_scene(draw, constants, geometry, bindings); });
 }
 
-void EmitRadiance::draw_scene(gpu::Draw& draw, const shaders::EmitConstants& constants, const Geometry& geometry,
-                              const std::vector<gpu::Binding>& bindings) const {
+void EmitRadiance::draw_scene(gpu::Draw& draw, const shaders::EmitConstants& constants,
+                              const Geometry& geometry, const std::vector<gpu::Binding>& bindings) const {
   const auto one_sided = geometry.scene.one_sided_indices;
   const auto all = static_cast<std::uint32_t>(geometry.scene.indices.size());
   draw.geometry(geometry.vertices, geometry.indices);

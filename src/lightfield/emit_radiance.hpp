@@ -1,17 +1,18 @@
-// emit_radiance: the scene seen along one direction, each surface with its radiance, all layers kept: the A-buffer.
-// Thesis, section 4.4; stencil routing: Myers and Bavoil 2007, "Stencil Routed A-Buffer". Subpass 1 sets the stencil of
-// sample s to s + 1, so that the s-th fragment of a pixel finds a one in sample s alone; subpass 2 writes colour and
-// depth through that test and takes one off every sample. A device with fewer samples than layers does this in several
-// routed passes. The list kind hands out places of a per-pixel list by an atomic counter instead.
-// Reads the geometry and `radiance`; writes the A-buffer. Costs fragments times layers; on lavapipe the samples.
+// emit_radiance: the scene seen along one direction, each surface with its radiance, all layers kept: the
+// A-buffer. Thesis, section 4.4; stencil routing: Myers and Bavoil 2007, "Stencil Routed A-Buffer". Subpass 1
+// sets the stencil of sample s to s + 1, so that the s-th fragment of a pixel finds a one in sample s alone;
+// subpass 2 writes colour and depth through that test and takes one off every sample. A device with fewer
+// samples than layers does this in several routed passes. The list kind hands out places of a per-pixel list by
+// an atomic counter instead. Reads the geometry and `radiance`; writes the A-buffer. Costs fragments times
+// layers; on lavapipe the samples.
 #pragma once
 
 #include <memory>
 #include <vector>
 
-#include "light_map.hpp"
 #include "lichtveld/lightfield/directions.hpp"
 #include "lichtveld/lightfield/settings.hpp"
+#include "light_map.hpp"
 #include "shared.h"
 
 namespace lichtveld::lightfield {
@@ -19,20 +20,20 @@ namespace lichtveld::lightfield {
 // The scene's sphere scaled to the unit sphere and seen along a direction.
 shaders::PsfView psf_view(const Direction& direction, const scene::Sphere& sphere);
 
-// All surfaces along one direction, per pixel of size * size. Either kind is bound as two or one resources, first in
-// the shaders' binding order (abuffer_stencil.glsl, abuffer_list.glsl).
+// All surfaces along one direction, per pixel of size * size. Either kind is bound as two or one resources,
+// first in the shaders' binding order (abuffer_stencil.glsl, abuffer_list.glsl).
 struct LayerStore {
   LayerStore(const gpu::Device& device, const Settings& settings, std::uint32_t capacity);
 
   std::uint32_t size, capacity;
-  std::uint32_t samples;  // layers a routed pass
+  std::uint32_t samples;    // layers a routed pass
   vk::raii::Sampler fetch;  // nearest: for texelFetch
   // stencil: rgb radiance, a depth; one array layer a routed pass, one sample a layer
   std::unique_ptr<gpu::Image> routed, stencil;
   // list: capacity places a pixel, and how many are filled
   std::unique_ptr<gpu::Buffer> layers, filled;
 
-  std::vector<gpu::Binding> bindings() const;    // for reading
+  std::vector<gpu::Binding> bindings() const;  // for reading
   std::vector<gpu::Kind> kinds() const;
 };
 

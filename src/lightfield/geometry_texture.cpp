@@ -46,8 +46,8 @@ void GeometryTexture::record(gpu::Frame& frame, const Geometry& geometry, const 
       draw.indexed(surface.first_index, surface.index_count);
     }
   });
-  frame.compute(gutter_, {gpu::reads(map.position), gpu::writes(map.source)}, shaders::TexelConstants{map.size}, map.groups,
-                map.groups);
+  frame.compute(gutter_, {gpu::reads(map.position), gpu::writes(map.source)}, shaders::TexelConstants{map.size},
+                map.groups, map.groups);
 }
 
 }  // namespace lichtveld::lightfield

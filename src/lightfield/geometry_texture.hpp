@@ -1,6 +1,6 @@
 // geometry_texture: each triangle drawn at its place in the atlas, so that a texel knows its surface point.
-// Thesis, section 4.2. Reads the geometry; writes position, normals, albedo, emission, then `source`, which names for
-// each gutter texel its nearest chart texel. Costs atlas texels, once a solve.
+// Thesis, section 4.2. Reads the geometry; writes position, normals, albedo, emission, then `source`, which
+// names for each gutter texel its nearest chart texel. Costs atlas texels, once a solve.
 #pragma once
 
 #include "light_map.hpp"

@@ -12,7 +12,10 @@ using Usage = vk::ImageUsageFlagBits;
 
 gpu::Image atlas_image(const gpu::Device& device, const char* name, std::uint32_t size, vk::Format format,
                        vk::ImageUsageFlags usage) {
-  return {device, std::string("lightfield/") + name, {.width = size, .height = size}, format,
+  return {device,
+          std::string("lightfield/") + name,
+          {.width = size, .height = size},
+          format,
           usage | Usage::eStorage | Usage::eTransferSrc | Usage::eTransferDst};
 }
 
@@ -47,10 +50,12 @@ LightMap::LightMap(const gpu::Device& device, std::uint32_t size)
 
 Geometry::Geometry(const gpu::Device& device, const scene::Scene& scene)
     : scene(scene),
-      vertices(gpu::upload<scene::Vertex>(device, "scene/vertices", scene.vertices, vk::BufferUsageFlagBits::eVertexBuffer)),
-      indices(gpu::upload<std::uint32_t>(device, "scene/indices", scene.indices, vk::BufferUsageFlagBits::eIndexBuffer)),
-      offsets(device, "scene/offsets", scene.bodies.size() * sizeof(glm::vec4), vk::BufferUsageFlagBits::eStorageBuffer,
-              gpu::Memory::host),
+      vertices(gpu::upload<scene::Vertex>(device, "scene/vertices", scene.vertices,
+                                          vk::BufferUsageFlagBits::eVertexBuffer)),
+      indices(gpu::upload<std::uint32_t>(device, "scene/indices", scene.indices,
+                                         vk::BufferUsageFlagBits::eIndexBuffer)),
+      offsets(device, "scene/offsets", scene.bodies.size() * sizeof(glm::vec4),
+              vk::BufferUsageFlagBits::eStorageBuffer, gpu::Memory::host),
       textures(upload_textures(device, scene)),
       sampler(device.handle(), vk::SamplerCreateInfo{.magFilter = vk::Filter::eLinear,
                                                      .minFilter = vk::Filter::eLinear,

@@ -1,7 +1,7 @@
-// stencil_routing: for each texel, order the layers of the pixel it projects to and find the last one in front of it.
-// Thesis, section 4.5. Depths are compared where the ray through the pixel's centre meets the texel's plane.
-// Reads the A-buffer and the texels' positions and normals; writes `psf_irradiance` (w_k L_k and w_k). Costs texels
-// times layers; the sort is chosen by Settings::sort.
+// stencil_routing: for each texel, order the layers of the pixel it projects to and find the last one in front
+// of it. Thesis, section 4.5. Depths are compared where the ray through the pixel's centre meets the texel's
+// plane. Reads the A-buffer and the texels' positions and normals; writes `psf_irradiance` (w_k L_k and w_k).
+// Costs texels times layers; the sort is chosen by Settings::sort.
 #pragma once
 
 #include "emit_radiance.hpp"
@@ -13,8 +13,8 @@ class StencilRouting {
   StencilRouting(const gpu::Device& device, const LayerStore& store, Sort sort);
 
   // Rays and misses are counted into `counters` if `count` is set.
-  void record(gpu::Frame& frame, const shaders::PsfView& view, const LayerStore& store, const LightMap& map, bool count,
-              const gpu::Buffer& counters) const;
+  void record(gpu::Frame& frame, const shaders::PsfView& view, const LayerStore& store, const LightMap& map,
+              bool count, const gpu::Buffer& counters) const;
 
  private:
   gpu::ComputePipeline route_;

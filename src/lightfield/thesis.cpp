@@ -24,17 +24,13 @@ constexpr std::size_t psfs_a_frame = 128;
 constexpr std::uint32_t most_bounces = 256;
 // `auto` ends when the bound on what is missing falls below this share of the mean.
 constexpr double converged = 1e-3;
-constexpr std::uint32_t most_layers = 128;  // stencil counters have 8 bits
 
-void check(const Settings& settings, const gpu::Device& device) {
-  const auto largest = std::min(4096u, device.summary().max_image_size);
-  if (settings.size < 16 || settings.size > largest)
-    throw std::invalid_argument("a size of " + std::to_string(settings.size) + " texels: it must lie in 16.." +
-                                std::to_string(largest));
-  if (settings.layers < 1 || settings.layers > most_layers)
-    throw std::invalid_argument(std::to_string(settings.layers) + " layers: there must be 1.." +
-                                std::to_string(most_layers));
-  if (settings.bounces == 0u) throw std::invalid_argument("0 bounces: 1 is direct light alone, 2 adds one reflection");
+void check_on(const gpu::Device& device, const Settings& settings) {
+  check(settings);
+  if (settings.size > device.summary().max_image_size)
+    throw std::invalid_argument("a size of " + std::to_string(settings.size) +
+                                " texels: " + device.summary().name + " can do " +
+                                std::to_string(device.summary().max_image_size) + " at most");
 }
 
 // The sort networks want a power of two, and every sample of a routed pass is used.
@@ -46,7 +42,10 @@ std::uint32_t capacity_for(std::uint32_t layers, const Settings& settings, const
 // Everything that depends on how many layers the A-buffer holds.
 struct Layered {
   Layered(const gpu::Device& device, const Settings& settings, std::uint32_t capacity)
-      : store(device, settings, capacity), emit(device, store), route(device, store, settings.sort), show(device, store) {}
+      : store(device, settings, capacity),
+        emit(device, store),
+        route(device, store, settings.sort),
+        show(device, store) {}
   LayerStore store;
   EmitRadiance emit;
   StencilRouting route;
@@ -68,7 +67,8 @@ struct Thesis::Parts {
         brdf(device),
         tone_map(device),
         counters(device, "lightfield/counters", sizeof(shaders::Counters),
-                 vk::BufferUsageFlagBits::eStorageBuffer | vk::BufferUsageFlagBits::eTransferDst, gpu::Memory::host) {}
+                 vk::BufferUsageFlagBits::eStorageBuffer | vk::BufferUsageFlagBits::eTransferDst,
+                 gpu::Memory::host) {}
 
   const gpu::Device& device;
   const Settings settings;
@@ -96,14 +96,15 @@ struct Thesis::Parts {
 };
 
 Thesis::Thesis(const gpu::Device& device, const scene::Scene& scene, const Settings& settings) {
-  check(settings, device);
+  check_on(device, settings);
   parts_ = std::make_unique<Parts>(device, scene, settings);
 }
 
 Thesis::~Thesis() = default;
 
 // Algorithm 1.
-Solution Thesis::solve(const std::vector<glm::vec3>& offsets, const StageObserver& observer, std::uint32_t observed) {
+Solution Thesis::solve(const std::vector<glm::vec3>& offsets, const StageObserver& observer,
+                       std::uint32_t observed) {
   Parts& parts = *parts_;
   Solution solution;
   parts.begin(offsets);  // geometry_texture, and L = Le
@@ -111,9 +112,10 @@ Solution Thesis::solve(const std::vector<glm::vec3>& offsets, const StageObserve
   solution.texels_valid = convergence.texels_valid();
   while (!parts.done(solution)) {
     const bool first = solution.bounces == 0;
-    parts.render_bounce(first, solution, observer, observed);  // for each PSF: emit_radiance, stencil_routing, blend
-    if (first && parts.widen(solution)) continue;              // layers would have been lost: again, with more
-    parts.end_bounce();                                        // blend into the total; brdf
+    parts.render_bounce(first, solution, observer,
+                        observed);                 // for each PSF: emit_radiance, stencil_routing, blend
+    if (first && parts.widen(solution)) continue;  // layers would have been lost: again, with more
+    parts.end_bounce();                            // blend into the total; brdf
     ++solution.bounces;
     solution.residual = convergence.measure(parts.device, parts.map);
   }
@@ -131,13 +133,15 @@ std::vector<std::uint8_t> Thesis::presented() {
   return {pixels.front().data(), pixels.front().data() + 4 * pixels.size()};
 }
 
-const gpu::PassTimes& Thesis::times() const { return parts_->times; }
+const gpu::PassTimes& Thesis::times() const {
+  return parts_->times;
+}
 
 bool Thesis::Parts::done(const Solution& solution) const {
   if (settings.bounces) return solution.bounces >= *settings.bounces;
   if (solution.bounces < most_bounces) return solution.bounces > 0 && solution.residual < converged;
-  spdlog::warn("still {:.2g} of the mean may be missing after {} bounces: an albedo near 1 bounds nothing", solution.residual,
-               solution.bounces);
+  spdlog::warn("still {:.2g} of the mean may be missing after {} bounces: an albedo near 1 bounds nothing",
+               solution.residual, solution.bounces);
   return true;
 }
 
@@ -189,9 +193,10 @@ bool Thesis::Parts::widen(const Solution& solution) {
   if (needed <= layered->store.capacity) return false;
   if (needed > most_layers)
     throw std::runtime_error("a PSF pixel has " + std::to_string(needed) + " layers, more than the " +
-                             std::to_string(most_layers) + " that can be kept; try fewer surfaces behind each other");
-  spdlog::warn("{} PSF pixels have more than {} layers, up to {}: room is made for all of them", solution.overflow_pixels,
-               settings.layers, needed);
+                             std::to_string(most_layers) +
+                             " that can be kept; try fewer surfaces behind each other");
+  spdlog::warn("{} PSF pixels have more than {} layers, up to {}: room is made for all of them",
+               solution.overflow_pixels, settings.layers, needed);
   layered.reset();  // first, so that both need not fit
   layered = std::make_unique<Layered>(device, settings, capacity_for(needed, settings, device));
   gpu::Frame frame(device, times);

@@ -22,8 +22,8 @@ ToneMap::ToneMap(const gpu::Device& device)
 
 void ToneMap::record(gpu::Frame& frame, const LightMap& map) const {
   frame.clear("tone_map", histogram_);
-  frame.compute(count_, {gpu::reads(map.radiance), gpu::reads(map.position), gpu::writes(histogram_)}, map.groups,
-                map.groups);
+  frame.compute(count_, {gpu::reads(map.radiance), gpu::reads(map.position), gpu::writes(histogram_)},
+                map.groups, map.groups);
   frame.compute(expose_, {gpu::reads(histogram_), gpu::writes(exposure_)}, 1, 1);
   frame.compute(map_, {gpu::reads(map.radiance), gpu::reads(exposure_), gpu::writes(map.presented)}, map.groups,
                 map.groups);

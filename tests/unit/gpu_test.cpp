@@ -92,7 +92,8 @@ TEST_F(Gpu, ImagesComeBackAsTheyWereSent) {
 TEST(Validation, SeesAMissingBarrier) {
   const Device device({.device = "", .validation = true});
   const Buffer buffer(device, "test/raced", 64, transfer);
-  const vk::raii::CommandBuffers made(device.handle(), {.commandPool = *device.commands(), .commandBufferCount = 1});
+  const vk::raii::CommandBuffers made(device.handle(),
+                                      {.commandPool = *device.commands(), .commandBufferCount = 1});
   const auto& commands = made.front();
   commands.begin({});
   commands.fillBuffer(buffer.handle(), 0, 64, 1);

@@ -49,7 +49,8 @@ TEST_P(DirectionSet, IntegratesACosine) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, DirectionSet, ::testing::ValuesIn(direction_counts().begin(), direction_counts().end()));
+INSTANTIATE_TEST_SUITE_P(All, DirectionSet,
+                         ::testing::ValuesIn(direction_counts().begin(), direction_counts().end()));
 
 TEST(Directions, OtherCountsAreRefusedWithTheList) {
   for (const std::uint32_t count : {0u, 1u, 25u, 385u, 8192u}) {

@@ -11,10 +11,10 @@
 namespace lichtveld::lightfield {
 namespace {
 
-using ::testing::HasSubstr;
 using lichtveld::testing::Chart;
 using lichtveld::testing::SceneBuilder;
 using lichtveld::testing::TempFolder;
+using ::testing::HasSubstr;
 constexpr double pi = std::numbers::pi;
 
 scene::Scene load(const SceneBuilder& builder) {
@@ -25,8 +25,8 @@ scene::Scene load(const SceneBuilder& builder) {
 // A closed box [-1, 1]^3 whose walls all emit `emission` and reflect `albedo`.
 scene::Scene furnace(float albedo, float emission = 1) {
   SceneBuilder builder;
-  builder.box("room", glm::vec3(-1), glm::vec3(1), {0, 0, 1, 1}, builder.material(glm::vec3(albedo), glm::vec3(emission)),
-              true);
+  builder.box("room", glm::vec3(-1), glm::vec3(1), {0, 0, 1, 1},
+              builder.material(glm::vec3(albedo), glm::vec3(emission)), true);
   return load(builder);
 }
 
@@ -111,7 +111,8 @@ TEST_F(ThesisMethod, FurnaceIsNearWithTheStencil) {
 
 TEST_F(ThesisMethod, RadianceOfAnyMagnitudeScales) {
   for (const float emission : {1e-6f, 1e6f}) {
-    const auto baked = bake(furnace(0.5f, emission), {.size = 32, .psf = 24, .bounces = 2, .abuffer = ABuffer::list});
+    const auto baked =
+        bake(furnace(0.5f, emission), {.size = 32, .psf = 24, .bounces = 2, .abuffer = ABuffer::list});
     EXPECT_NEAR(baked.mean({0, 0, 1, 1}) / (emission * pi * 1.5), 1, 1e-4) << emission;
   }
 }
@@ -124,16 +125,19 @@ TEST_F(ThesisMethod, ParallelSquaresHaveTheirFormFactor) {
   square(builder, "floor", -1, false, second_chart, builder.material(glm::vec3(0.5)));
   const auto scene = load(builder);
   for (const auto abuffer : {ABuffer::list, ABuffer::stencil}) {
-    const auto baked = bake(scene, {.size = 128, .psf = 1536, .bounces = 1, .abuffer = abuffer, .sort = Sort::scan});
+    const auto baked =
+        bake(scene, {.size = 128, .psf = 1536, .bounces = 1, .abuffer = abuffer, .sort = Sort::scan});
     EXPECT_NEAR(baked.mean(second_chart) / (pi * 0.199825 * 10), 1, 0.02);
-    EXPECT_GT(baked.solution.misses, baked.solution.rays / 2);  // an open scene: most rays hit nothing, and that shows
+    EXPECT_GT(baked.solution.misses,
+              baked.solution.rays / 2);  // an open scene: most rays hit nothing, and that shows
   }
 }
 
 TEST_F(ThesisMethod, OneSidedSurfacesAreSeenFromTheirFrontAlone) {
   for (const bool double_sided : {false, true}) {
     SceneBuilder builder;
-    square(builder, "lamp", 1, false, first_chart, builder.material(glm::vec3(0), glm::vec3(10), double_sided));  // faces up
+    square(builder, "lamp", 1, false, first_chart,
+           builder.material(glm::vec3(0), glm::vec3(10), double_sided));  // faces up
     square(builder, "floor", -1, false, second_chart, builder.material(glm::vec3(0.5)));
     const auto baked = bake(load(builder), {.size = 64, .psf = 384, .bounces = 1, .abuffer = ABuffer::list});
     if (double_sided) {
@@ -153,12 +157,13 @@ TEST_F(ThesisMethod, ASurfaceInContactBlocksTheLight) {
   square(builder, "lid", -1, true, {0.05f, 0.55f, 0.45f, 0.95f}, builder.material(glm::vec3(0.5)));
   const auto baked = bake(load(builder), {.size = 64, .psf = 384, .bounces = 1, .abuffer = ABuffer::list});
   const float inset = 2.0f / 64;  // the rim sees past the lid's rasterised edge
-  const double inside = baked.mean({second_chart.u0 + inset, second_chart.v0 + inset, second_chart.u1 - inset,
-                                    second_chart.v1 - inset});
+  const double inside = baked.mean(
+      {second_chart.u0 + inset, second_chart.v0 + inset, second_chart.u1 - inset, second_chart.v1 - inset});
   EXPECT_LT(inside, 0.001 * pi * 0.2 * 10);
 }
 
-// The lamp is the layer behind `plates` one-sided plates that face down too; the floor is to see the lowest plate.
+// The lamp is the layer behind `plates` one-sided plates that face down too; the floor is to see the lowest
+// plate.
 class Plates : public ThesisMethod, public ::testing::WithParamInterface<ABuffer> {};
 
 TEST_P(Plates, LayersBeyondTheLimitAreCountedAndRenderedAllTheSame) {
@@ -167,7 +172,8 @@ TEST_P(Plates, LayersBeyondTheLimitAreCountedAndRenderedAllTheSame) {
   const int dark = builder.material(glm::vec3(0)), bright = builder.material(glm::vec3(0), glm::vec3(10));
   square(builder, "floor", -1, false, {0.02f, 0.02f, 0.23f, 0.23f}, dark);
   for (int plate = 0; plate < plates; ++plate) {  // the nearest is drawn last: the first to be lost
-    const float u = 0.02f + 0.25f * static_cast<float>((plate + 1) % 4), v = 0.02f + 0.25f * static_cast<float>((plate + 1) / 4);
+    const float u = 0.02f + 0.25f * static_cast<float>((plate + 1) % 4),
+                v = 0.02f + 0.25f * static_cast<float>((plate + 1) / 4);
     square(builder, "plate", 1 - 0.1f * static_cast<float>(plate), true, {u, v, u + 0.21f, v + 0.21f},
            plate == plates - 1 ? bright : dark);
   }
@@ -221,7 +227,8 @@ TEST_F(ThesisMethod, AShadowFollowsItsCube) {
   builder.set_movable(cube);
   const auto scene = load(builder);
   const float middle = (second_chart.u0 + second_chart.u1) / 2;
-  const Chart left{second_chart.u0, second_chart.v0, middle, second_chart.v1}, right{middle, second_chart.v0, second_chart.u1, second_chart.v1};
+  const Chart left{second_chart.u0, second_chart.v0, middle, second_chart.v1},
+      right{middle, second_chart.v0, second_chart.u1, second_chart.v1};
   const Settings settings{.size = 64, .psf = 384, .bounces = 1, .abuffer = ABuffer::list};
   const auto to_left = bake(scene, settings, {glm::vec3(0), glm::vec3(-0.6f, 0, 0)});
   const auto to_right = bake(scene, settings, {glm::vec3(0), glm::vec3(0.6f, 0, 0)});
@@ -255,7 +262,8 @@ TEST_F(ThesisMethod, SettingsOutOfRangeAreRefusedByName) {
   EXPECT_THAT(refusal({.layers = 129}), HasSubstr("1..128"));
 }
 
-// The presented map: white walls of one radiance land on Reinhard's middle grey for the log-average, in every channel.
+// The presented map: white walls of one radiance land on Reinhard's middle grey for the log-average, in every
+// channel.
 TEST_F(ThesisMethod, PresentsUniformLightAsOneGrey) {
   const auto scene = furnace(0.5f, 3);
   Thesis method(device(), scene, {.size = 32, .psf = 24, .bounces = 2, .abuffer = ABuffer::list});

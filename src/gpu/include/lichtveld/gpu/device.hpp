@@ -27,7 +27,7 @@ struct DeviceOptions {
 struct DeviceSummary {
   std::string name, type, driver;  // driver: name and version, as goldens are kept by
   std::uint32_t samples = 1;       // most samples a pixel for colour and stencil at once: layers a routed pass
-  std::uint32_t max_image_size = 0;              // texels a side
+  std::uint32_t max_image_size = 0;                  // texels a side
   std::uint64_t max_storage_buffer = 0, memory = 0;  // bytes
   std::uint32_t subgroup_size = 0;
   std::string missing;  // empty, or the features we need that it lacks
@@ -65,7 +65,8 @@ class Device {
   // Gives a Vulkan object its name in captures and validation messages.
   template <typename Handle>
   void name(const Handle& object, const std::string& name) const {
-    set_name(Handle::objectType, reinterpret_cast<std::uint64_t>(static_cast<typename Handle::CType>(*object)), name);
+    set_name(Handle::objectType, reinterpret_cast<std::uint64_t>(static_cast<typename Handle::CType>(*object)),
+             name);
   }
 
   // What the validation layers have said so far (warnings and errors). Any is a programmer's error.
@@ -79,7 +80,8 @@ class Device {
 
   static VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlagBitsEXT severity,
                                                    VkDebugUtilsMessageTypeFlagsEXT type,
-                                                   const VkDebugUtilsMessengerCallbackDataEXT* data, void* user);
+                                                   const VkDebugUtilsMessengerCallbackDataEXT* data,
+                                                   void* user);
   void set_name(vk::ObjectType type, std::uint64_t handle, const std::string& name) const;
 
   std::unique_ptr<Messages> messages_ = std::make_unique<Messages>();

@@ -1,4 +1,5 @@
-// A frame of GPU work: passes in order, each with its debug label, timestamps and barriers, which nothing else adds.
+// A frame of GPU work: passes in order, each with its debug label, timestamps and barriers, which nothing else
+// adds.
 #pragma once
 
 #include <chrono>
@@ -30,8 +31,8 @@ struct Binding {
   bool writes = false;
 };
 Binding sampled(const Image& image, const vk::raii::Sampler& sampler);
-Binding reads(const Image& image);  // storage image
-Binding writes(const Image& image);  // storage image; also for reading and writing
+Binding reads(const Image& image);    // storage image
+Binding writes(const Image& image);   // storage image; also for reading and writing
 Binding reads(const Buffer& buffer);  // storage buffer
 Binding writes(const Buffer& buffer);
 
@@ -78,8 +79,8 @@ class Frame {
 
   // A compute pass: bindings in the order of the pipeline's kinds, workgroups in x and y.
   template <typename Constants>
-  void compute(const ComputePipeline& pipeline, const std::vector<Binding>& bindings, const Constants& constants,
-               std::uint32_t groups_x, std::uint32_t groups_y) {
+  void compute(const ComputePipeline& pipeline, const std::vector<Binding>& bindings,
+               const Constants& constants, std::uint32_t groups_x, std::uint32_t groups_y) {
     compute_bytes(pipeline, bindings, std::as_bytes(std::span(&constants, 1)), groups_x, groups_y);
   }
   void compute(const ComputePipeline& pipeline, const std::vector<Binding>& bindings, std::uint32_t groups_x,

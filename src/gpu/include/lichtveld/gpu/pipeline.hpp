@@ -16,8 +16,8 @@ enum class Kind { sampled_image, storage_image, storage_buffer };
 
 // What every pipeline is made of besides its shaders. Specialisation constant i has the id i.
 struct Interface {
-  std::vector<Kind> kinds = {};     // binding i has kinds[i]
-  std::uint32_t push_bytes = 0;     // of push constants, <= 128
+  std::vector<Kind> kinds = {};  // binding i has kinds[i]
+  std::uint32_t push_bytes = 0;  // of push constants, <= 128
   std::vector<std::uint32_t> specialisation = {};
 };
 
@@ -30,7 +30,8 @@ class Pipeline {
   vk::PipelineBindPoint bind_point() const { return bind_point_; }
 
  protected:
-  Pipeline(const Device& device, std::string name, const Interface& interface, vk::PipelineBindPoint bind_point);
+  Pipeline(const Device& device, std::string name, const Interface& interface,
+           vk::PipelineBindPoint bind_point);
 
   std::string name_;
   std::vector<Kind> kinds_;
@@ -54,9 +55,9 @@ struct VertexAttribute {
 struct GraphicsState {
   std::uint32_t vertex_stride = 0;  // 0: no vertex buffer
   std::vector<VertexAttribute> attributes = {};
-  std::vector<vk::Format> colours = {};                   // of the attachments
-  vk::Format stencil_format = vk::Format::eUndefined;     // eUndefined: no stencil attachment
-  vk::StencilOpState stencil = {};                        // front and back alike
+  std::vector<vk::Format> colours = {};                // of the attachments
+  vk::Format stencil_format = vk::Format::eUndefined;  // eUndefined: no stencil attachment
+  vk::StencilOpState stencil = {};                     // front and back alike
   vk::CullModeFlags cull = vk::CullModeFlagBits::eNone;
   vk::FrontFace front = vk::FrontFace::eCounterClockwise;
   std::uint32_t samples = 1;
@@ -65,10 +66,10 @@ struct GraphicsState {
 
 class GraphicsPipeline : public Pipeline {
  public:
-  // An empty fragment shader makes a pipeline that only touches the stencil. Viewport, scissor and stencil reference
-  // are dynamic: Frame::render sets the first two to the target's extent.
-  GraphicsPipeline(const Device& device, std::string name, Spirv vertex, Spirv fragment, const Interface& interface,
-                   const GraphicsState& state);
+  // An empty fragment shader makes a pipeline that only touches the stencil. Viewport, scissor and stencil
+  // reference are dynamic: Frame::render sets the first two to the target's extent.
+  GraphicsPipeline(const Device& device, std::string name, Spirv vertex, Spirv fragment,
+                   const Interface& interface, const GraphicsState& state);
 };
 
 }  // namespace lichtveld::gpu

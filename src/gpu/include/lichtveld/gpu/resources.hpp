@@ -1,5 +1,5 @@
-// Buffers and images that own their memory and cannot be made without a name. Each remembers how it was last used,
-// so that Frame can put the right barrier before its next use.
+// Buffers and images that own their memory and cannot be made without a name. Each remembers how it was last
+// used, so that Frame can put the right barrier before its next use.
 #pragma once
 
 #include <span>
@@ -72,8 +72,10 @@ class Image {
   Image(const Device& device, std::string name, ImageShape shape, vk::Format format, vk::ImageUsageFlags usage);
 
   vk::Image handle() const { return *image_; }
-  vk::ImageView view() const { return *view_; }                                   // of all layers
-  vk::ImageView layer_view(std::uint32_t layer) const { return *layer_views_.at(layer); }  // of one, to render to
+  vk::ImageView view() const { return *view_; }  // of all layers
+  vk::ImageView layer_view(std::uint32_t layer) const {
+    return *layer_views_.at(layer);
+  }  // of one, to render to
   const ImageShape& shape() const { return shape_; }
   vk::Extent2D extent() const { return {shape_.width, shape_.height}; }
   vk::Format format() const { return format_; }

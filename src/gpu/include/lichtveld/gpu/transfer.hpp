@@ -9,7 +9,8 @@ namespace lichtveld::gpu {
 
 // A device buffer with these contents (at least one element is made, so that empty scenes bind).
 template <typename T>
-Buffer upload(const Device& device, const std::string& name, std::span<const T> contents, vk::BufferUsageFlags usage) {
+Buffer upload(const Device& device, const std::string& name, std::span<const T> contents,
+              vk::BufferUsageFlags usage) {
   const vk::DeviceSize bytes = std::max<vk::DeviceSize>(sizeof(T), contents.size_bytes());
   Buffer staging(device, name + " (staging)", bytes, vk::BufferUsageFlagBits::eTransferSrc, Memory::host);
   std::memcpy(staging.bytes().data(), contents.data(), contents.size_bytes());
@@ -29,8 +30,8 @@ Image upload_srgb(const Device& device, const std::string& name, std::uint32_t w
 template <typename T>
 std::vector<T> download(const Device& device, const Image& image) {
   std::vector<T> pixels(std::size_t{image.shape().width} * image.shape().height);
-  Buffer staging(device, image.name() + " (read back)", pixels.size() * sizeof(T), vk::BufferUsageFlagBits::eTransferDst,
-                 Memory::host);
+  Buffer staging(device, image.name() + " (read back)", pixels.size() * sizeof(T),
+                 vk::BufferUsageFlagBits::eTransferDst, Memory::host);
   PassTimes times;
   Frame frame(device, times);
   frame.copy("read back " + image.name(), image, staging);

@@ -1,4 +1,5 @@
-// The directions of the light field: a subdivided octahedron, each direction with the solid angle it stands for.
+// The directions of the light field: a subdivided octahedron, each direction with the solid angle it stands
+// for.
 #pragma once
 
 #include <cstdint>
@@ -21,8 +22,9 @@ std::span<const std::uint32_t> direction_counts();
 // "8, 24, 32, ..": for messages.
 std::string direction_counts_text();
 
-// The set of `count` directions. The second half are the antipodes of the first: direction count / 2 + i is exactly
-// minus direction i, with the same solid angle. Throws std::invalid_argument that lists the counts for any other.
+// The set of `count` directions. The second half are the antipodes of the first: direction count / 2 + i is
+// exactly minus direction i, with the same solid angle. Throws std::invalid_argument that lists the counts for
+// any other.
 std::vector<Direction> directions(std::uint32_t count);
 
 }  // namespace lichtveld::lightfield

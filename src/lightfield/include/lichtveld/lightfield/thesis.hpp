@@ -21,13 +21,14 @@ class Thesis {
   Thesis(const gpu::Device& device, const scene::Scene& scene, const Settings& settings);
   ~Thesis();
 
-  // Computes E with body i shifted by offsets[i] [m]; offsets has one entry a body. With an observer, the outputs of
-  // each pass are shown for direction `observed` in the first bounce, and at the end.
-  Solution solve(const std::vector<glm::vec3>& offsets, const StageObserver& observer = {}, std::uint32_t observed = 0);
+  // Computes E with body i shifted by offsets[i] [m]; offsets has one entry a body. With an observer, the
+  // outputs of each pass are shown for direction `observed` in the first bounce, and at the end.
+  Solution solve(const std::vector<glm::vec3>& offsets, const StageObserver& observer = {},
+                 std::uint32_t observed = 0);
 
   // After solve(). size * size texels, row 0 on top.
-  std::vector<glm::vec4> irradiance();       // rgb: E [W m^-2]; a: 1 on valid texels
-  std::vector<std::uint8_t> presented();     // tone-mapped L, sRGB RGBA, gutters dilated
+  std::vector<glm::vec4> irradiance();    // rgb: E [W m^-2]; a: 1 on valid texels
+  std::vector<std::uint8_t> presented();  // tone-mapped L, sRGB RGBA, gutters dilated
 
   // What the passes have cost since the start, by name.
   const gpu::PassTimes& times() const;

@@ -1,0 +1,119 @@
+#include "pass_table.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "options.hpp"
+
+namespace lichtveld::commands {
+
+namespace {
+
+using lightfield::ABuffer;
+using lightfield::Sort;
+
+double median(std::vector<double> values) {
+  std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
+  return values[values.size() / 2];
+}
+
+std::uint64_t calls_of(const PassRow& row, const std::string& pass) {
+  const auto found = row.runs.front().find(pass);
+  return found == row.runs.front().end() ? 0 : found->second.calls;
+}
+
+std::string label(const lightfield::Settings& settings) {
+  return fmt::format("{},{},{},{}", name_of(settings.abuffer), name_of(settings.sort), settings.size,
+                     settings.psf);
+}
+
+// The row with these settings, or null.
+const PassRow* find(const std::vector<PassRow>& rows, const PassRow& like, ABuffer abuffer, Sort sort) {
+  for (const auto& row : rows)
+    if (row.scene == like.scene && row.settings.size == like.settings.size &&
+        row.settings.psf == like.settings.psf && row.settings.abuffer == abuffer && row.settings.sort == sort)
+      return &row;
+  return nullptr;
+}
+
+const char* holds(bool it_does) {
+  return it_does ? "holds" : "does not hold";
+}
+
+}  // namespace
+
+const std::vector<std::string>& pass_names() {
+  static const std::vector<std::string> names = {
+      "geometry_texture", "emit_radiance", "stencil_routing", "blend", "brdf", "tone_map"};
+  return names;
+}
+
+double pass_ms(const PassRow& row, const std::string& pass) {
+  std::vector<double> values;
+  for (const auto& run : row.runs) {
+    const auto found = run.find(pass);
+    values.push_back(found == run.end() ? 0 : found->second.gpu_ms);
+  }
+  return median(values);
+}
+
+double total_ms(const PassRow& row) {
+  return median(row.total_ms);
+}
+
+std::string pass_csv(const std::vector<PassRow>& rows) {
+  std::string csv = "scene,method,abuffer,sort,size,psf,bounces,pass,calls,ms_median,ms_a_call\n";
+  for (const auto& row : rows)
+    for (const auto& pass : pass_names()) {
+      const auto calls = calls_of(row, pass);
+      const double ms = pass_ms(row, pass);
+      csv += fmt::format("{},thesis,{},{},{},{},{:.4f},{:.6f}\n", row.scene, label(row.settings),
+                         *row.settings.bounces, pass, calls, ms,
+                         calls > 0 ? ms / static_cast<double>(calls) : 0.0);
+    }
+  return csv;
+}
+
+std::string pass_text(const std::vector<PassRow>& rows) {
+  std::string text = fmt::format("{:<8} {:<13} {:>5} {:>5}", "abuffer", "sort", "size", "psf");
+  for (const auto& pass : pass_names()) text += fmt::format(" {:>16}", pass);
+  text += fmt::format(" {:>9}\n", "total ms");
+  for (const auto& row : rows) {
+    text += fmt::format("{:<8} {:<13} {:>5} {:>5}", name_of(row.settings.abuffer), name_of(row.settings.sort),
+                        row.settings.size, row.settings.psf);
+    for (const auto& pass : pass_names()) text += fmt::format(" {:>16.1f}", pass_ms(row, pass));
+    text += fmt::format(" {:>9.0f}\n", total_ms(row));
+  }
+  return text;
+}
+
+std::string findings(const std::vector<PassRow>& rows) {
+  std::string text;
+  for (const auto& row : rows) {
+    // As the thesis first measured: stencil routing, bitonic sort.
+    if (row.settings.abuffer != ABuffer::stencil || row.settings.sort != Sort::bitonic) continue;
+    const auto where = fmt::format("size {}, {} PSFs", row.settings.size, row.settings.psf);
+    double all = 0;
+    for (const auto& pass : pass_names()) all += pass_ms(row, pass);
+    const double emission = pass_ms(row, "emit_radiance") / all,
+                 sorting = pass_ms(row, "stencil_routing") / all;
+    text += fmt::format(
+        "{}: sorting and multisampled emission dominate: {} ({:.0f} % and {:.0f} % of the passes' time)\n",
+        where, holds(emission + sorting > 0.5), 100 * sorting, 100 * emission);
+    if (const auto* swap = find(rows, row, ABuffer::stencil, Sort::compare_swap)) {
+      const double ratio = pass_ms(row, "stencil_routing") / pass_ms(*swap, "stencil_routing");
+      text += fmt::format("{}: compare-and-swap beats bitonic: {} (stencil_routing {:.2f} times faster)\n",
+                          where, holds(ratio > 1), ratio);
+    }
+    const auto* scan = find(rows, row, ABuffer::stencil, Sort::scan);
+    const auto* list = find(rows, row, ABuffer::list, Sort::scan);
+    if (scan != nullptr && list != nullptr)
+      text += fmt::format(
+          "{}: the list A-buffer with a scan is {:.2f} times faster than stencil routing with one\n", where,
+          total_ms(*scan) / total_ms(*list));
+  }
+  return text;
+}
+
+}  // namespace lichtveld::commands

@@ -1,0 +1,22 @@
+#include "lichtveld/lightfield/settings.hpp"
+
+#include <stdexcept>
+#include <string>
+
+#include "lichtveld/lightfield/directions.hpp"
+
+namespace lichtveld::lightfield {
+
+void check(const Settings& settings) {
+  if (settings.size < 16 || settings.size > 4096)
+    throw std::invalid_argument("a size of " + std::to_string(settings.size) +
+                                " texels: it must lie in 16..4096");
+  directions(settings.psf);
+  if (settings.layers < 1 || settings.layers > most_layers)
+    throw std::invalid_argument(std::to_string(settings.layers) + " layers: there must be 1.." +
+                                std::to_string(most_layers));
+  if (settings.bounces == 0u)
+    throw std::invalid_argument("0 bounces: 1 is direct light alone, 2 adds one reflection");
+}
+
+}  // namespace lichtveld::lightfield

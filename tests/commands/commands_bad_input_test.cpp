@@ -1,0 +1,143 @@
+// What strangers get wrong: the exit status, and a message that names the culprit and what to try.
+#include <gmock/gmock.h>
+
+#include "commands_run.hpp"
+#include "scene_builder.hpp"
+
+namespace lichtveld::testing {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+struct BadUse {
+  const char* name;
+  std::string arguments;
+  int status;
+  std::vector<std::string> says;
+};
+
+class BadUsage : public ::testing::TestWithParam<BadUse> {};
+
+TEST_P(BadUsage, IsNamed) {
+  const auto& use = GetParam();
+  const TempFolder folder;
+  std::string arguments = use.arguments;
+  for (auto at = arguments.find("OUT"); at != std::string::npos; at = arguments.find("OUT"))
+    arguments.replace(at, 3, (folder.path() / "E.exr").string());
+  const auto ran = run(arguments);
+  EXPECT_EQ(ran.status, use.status) << ran.output;
+  for (const auto& words : use.says) EXPECT_THAT(ran.output, HasSubstr(words));
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path())) << "something half-written is left behind";
+}
+
+const std::string bake = "bake " + cornell + " --out OUT --size 32 --psf 8 --bounces 1 ";
+
+INSTANTIATE_TEST_SUITE_P(
+    CommandLine, BadUsage,
+    ::testing::Values(
+        BadUse{"NoCommand", "", 2, {"subcommand", "--help"}}, BadUse{"UnknownCommand", "paint", 2, {"--help"}},
+        BadUse{"UnknownOption", bake + "--colour red", 2, {"--colour"}},
+        BadUse{"NoOut", "bake " + cornell, 2, {"--out"}},
+        BadUse{"NoScene", "bake nowhere.glb --out OUT", 2, {"nowhere.glb"}},
+        BadUse{"ScenIsAFolder", "bake /tmp --out OUT", 2, {"/tmp"}},
+        BadUse{"Links", bake + "--method links", 2, {"links", "thesis"}},
+        BadUse{"Reference", bake + "--method reference", 2, {"reference", "thesis"}},
+        BadUse{"UnknownMethod", bake + "--method magic", 2, {"magic", "thesis"}},
+        BadUse{"UnknownABuffer", bake + "--abuffer magic", 2, {"magic", "list|stencil"}},
+        BadUse{"UnknownSort", bake + "--sort magic", 2, {"magic", "bitonic|compare-swap|scan"}},
+        BadUse{"Psf", "bake " + cornell + " --out OUT --psf 100", 2, {"100 PSFs", "8, 24, 32, 96, 128, 384"}},
+        BadUse{"PsfNotANumber", "bake " + cornell + " --out OUT --psf many", 2, {"--psf"}},
+        BadUse{"SizeTooSmall", "bake " + cornell + " --out OUT --size 4", 2, {"4 texels", "16..4096"}},
+        BadUse{"SizeTooLarge", "bake " + cornell + " --out OUT --size 100000", 2, {"100000", "16..4096"}},
+        BadUse{"SizeNegative", "bake " + cornell + " --out OUT --size -5", 2, {"--size"}},
+        BadUse{"Bounces", "bake " + cornell + " --out OUT --bounces 0", 2, {"--bounces 0", "auto"}},
+        BadUse{"BouncesWord", "bake " + cornell + " --out OUT --bounces many", 2, {"--bounces many", "auto"}},
+        BadUse{"Layers", bake + "--layers 0", 2, {"1..128"}},
+        BadUse{"MoveWithoutNumbers", bake + "--move cube1", 2, {"--move cube1", "NODE=dx,dy,dz"}},
+        BadUse{"MoveShort", bake + "--move cube1=1,2", 2, {"NODE=dx,dy,dz"}},
+        BadUse{"MoveNan", bake + "--move cube1=nan,0,0", 2, {"NODE=dx,dy,dz"}},
+        BadUse{"MoveUnknown", bake + "--move sofa=1,0,0", 2, {"sofa", "cube1, cube2"}},
+        BadUse{"MoveFixed", bake + "--move floor=1,0,0", 2, {"floor", "cube1, cube2"}},
+        BadUse{"OutFolderMissing",
+               "bake " + cornell + " --out OUT/no/E.exr --size 32 --psf 8 --bounces 1",
+               2,
+               {"not a folder"}},
+        BadUse{"OutIsAFolder",
+               "bake " + cornell + " --out /tmp --size 32 --psf 8 --bounces 1",
+               2,
+               {"/tmp", "it is a folder"}},
+        BadUse{"NoSuchDevice", bake + "--device sofa", 3, {"sofa", "llvmpipe"}},
+        BadUse{"ServeWithoutToken",
+               "serve --scene " + cornell + " --signaling ws://127.0.0.1:1/server --token-file nowhere",
+               2,
+               {"--token-file", "nowhere"}},
+        BadUse{"ServeEmptyToken",
+               "serve --scene " + cornell + " --signaling ws://127.0.0.1:1/server --token-file /dev/null",
+               2,
+               {"/dev/null", "empty"}},
+        BadUse{
+            "ServeRate",
+            "serve --scene " + cornell + " --signaling ws://127.0.0.1:1/server --token-file /dev/null --rate 0",
+            2,
+            {"--rate"}},
+        BadUse{"ServeBadUrl",
+               "serve --size 32 --psf 8 --scene " + cornell +
+                   " --signaling gopher:hole --token-file " LICHTVELD_SOURCE_DIR "/LICENSE",
+               2,
+               {"gopher:hole"}}),
+    [](const auto& use) { return use.param.name; });
+
+TEST(BadDevice, NoDriverIsStatus3) {
+  const std::string none = "VK_ICD_FILENAMES=/nonexistent VK_DRIVER_FILES=/nonexistent";
+  for (const auto& command : {std::string("info"), "bake " + cornell + " --out /dev/null"}) {
+    const auto ran = run(command, none);
+    EXPECT_EQ(ran.status, 3) << ran.output;
+    EXPECT_THAT(ran.output, HasSubstr("mesa-vulkan-drivers"));
+  }
+}
+
+TEST(BadDevice, MissingValidationLayersAreNamed) {
+  const TempFolder folder;
+  const auto ran = run("bake " + cornell + " --validation --out /dev/null",
+                       "XDG_DATA_DIRS=/nonexistent VK_LAYER_PATH=" + folder.path().string());
+  EXPECT_EQ(ran.status, 3) << ran.output;
+  EXPECT_THAT(ran.output, HasSubstr("vulkan-validationlayers"));
+}
+
+TEST(BadScene, IsNamedWithItsNodes) {
+  const TempFolder folder;
+  SceneBuilder builder;
+  const int grey = builder.material(glm::vec3(0.5), glm::vec3(1));
+  builder.box("table", glm::vec3(-1), glm::vec3(1), {0, 0, 1, 1}, grey);
+  builder.box("chair", glm::vec3(2), glm::vec3(3), {0, 0, 0.5f, 0.5f}, grey);
+  const auto file = folder.write("overlap.glb", builder.glb()).string();
+  const auto ran = run("bake " + file + " --out " + (folder.path() / "E.exr").string());
+  EXPECT_EQ(ran.status, 2);
+  EXPECT_THAT(ran.output, AllOf(HasSubstr("table"), HasSubstr("chair"), HasSubstr("texels")));
+  const auto cut = folder.write("cut.glb", builder.glb().substr(0, 200)).string();
+  const auto truncated = run("bake " + cut + " --out " + (folder.path() / "E.exr").string());
+  EXPECT_EQ(truncated.status, 2);
+  EXPECT_THAT(truncated.output, HasSubstr("cut.glb"));
+}
+
+TEST(BadOutput, AnOlderFileSurvivesAFailure) {
+  const TempFolder folder;
+  const auto old = folder.write("E.exr", "an older result");
+  EXPECT_EQ(run("bake nowhere.glb --out " + old.string()).status, 2);
+  EXPECT_EQ(std::filesystem::file_size(old), 15u);
+}
+
+TEST(Serve, EndsAtOnceOnSigtermWhileSignalingIsAway) {
+  const TempFolder folder;
+  const auto token = folder.write("token", "secret").string();
+  const auto ran = run("serve --size 32 --psf 8 --scene " + cornell +
+                           " --signaling ws://127.0.0.1:1/server --token-file " + token,
+                       "timeout --signal=TERM 5");
+  EXPECT_EQ(ran.status, 124) << ran.output;  // timeout's own: it had to ask
+  EXPECT_THAT(ran.output, AllOf(HasSubstr("stopped: 0 maps"), Not(HasSubstr("Killed"))));
+}
+
+}  // namespace
+}  // namespace lichtveld::testing

@@ -1,0 +1,111 @@
+// lichtveld bake and info: their files and what they report.
+#include <OpenImageIO/imagebuf.h>
+#include <OpenImageIO/imageio.h>
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+
+#include "commands_run.hpp"
+#include "scene_builder.hpp"
+
+namespace lichtveld::testing {
+namespace {
+
+using nlohmann::json;
+using ::testing::HasSubstr;
+
+class Bake : public ::testing::Test {
+ protected:
+  std::string path(const std::string& name) const { return (folder_.path() / name).string(); }
+
+  // Bakes the Cornell room small and returns all values of E.exr.
+  std::vector<float> bake(const std::string& name, const std::string& options = "") {
+    const auto ran = run("bake " + cornell + " --validation --size 64 --psf 24 --bounces 2 --out " +
+                         path(name) + " " + options);
+    EXPECT_EQ(ran.status, 0) << ran.output;
+    OIIO::ImageBuf image(path(name));
+    std::vector<float> values(64 * 64 * 4);
+    EXPECT_TRUE(image.get_pixels(OIIO::ROI::All(), OIIO::TypeDesc::FLOAT, values.data()));
+    return values;
+  }
+
+  TempFolder folder_;
+};
+
+TEST_F(Bake, WritesFloatRgbaWithValidTexelsInAlpha) {
+  const auto values = bake("E.exr");
+  const auto file = OIIO::ImageInput::open(path("E.exr"));
+  ASSERT_TRUE(file);
+  EXPECT_EQ(file->spec().format, OIIO::TypeDesc::FLOAT);
+  EXPECT_EQ(file->spec().tile_width, 0) << "scanlines";
+  EXPECT_EQ(file->spec().channelnames, (std::vector<std::string>{"R", "G", "B", "A"}));
+  for (std::size_t texel = 0; texel < values.size(); texel += 4) {
+    ASSERT_TRUE(values[texel + 3] == 0 || values[texel + 3] == 1);
+    ASSERT_TRUE(values[texel + 3] == 1 || values[texel] == 0) << "light outside the charts";
+  }
+}
+
+TEST_F(Bake, ReportsWhatItDid) {
+  const auto values = bake("E.exr", "--report " + path("r.json") + " --png " + path("map.png"));
+  const auto report = json::parse(std::ifstream(path("r.json")));
+  EXPECT_THAT(report["device"].get<std::string>(), HasSubstr("llvmpipe"));
+  EXPECT_EQ(report["method"], "thesis");
+  EXPECT_EQ(report["size"], 64);
+  EXPECT_EQ(report["psf"], 24);
+  EXPECT_EQ(report["layers"], 8);
+  EXPECT_EQ(report["bounces_used"], 2);
+  EXPECT_GT(report["residual"], 0);
+  int valid = 0;
+  for (std::size_t texel = 0; texel < values.size(); texel += 4) valid += values[texel + 3] == 1;
+  EXPECT_EQ(report["texels_valid"], valid);
+  EXPECT_GE(report["depth_layers_max"], 2);
+  EXPECT_EQ(report["overflow_pixels"], 0);
+  EXPECT_LT(report["miss_fraction"], 0.01);
+  EXPECT_GT(report["time_ms"]["total"], 0);
+  for (const char* pass :
+       {"geometry_texture", "emit_radiance", "stencil_routing", "blend", "brdf", "tone_map"}) {
+    EXPECT_GT(report["time_ms"]["passes"][pass]["calls"], 0) << pass;
+    EXPECT_GT(report["time_ms"]["passes"][pass]["gpu_ms"], 0) << pass;
+  }
+  EXPECT_GT(report["memory_bytes"]["lightfield/total_irradiance"], 0);
+  std::int64_t sum = 0;
+  for (const auto& [name, bytes] : report["memory_bytes"].items())
+    sum += name == "total" ? 0 : bytes.get<std::int64_t>();
+  EXPECT_EQ(report["memory_bytes"]["total"], sum);
+  const OIIO::ImageBuf map(path("map.png"));
+  EXPECT_EQ(map.spec().width, 64);
+  EXPECT_EQ(map.nchannels(), 3);
+}
+
+TEST_F(Bake, LiveMovesEndWhereAFreshBakeDoes) {
+  const std::string moves = "--move cube1=-0.4,0.3,0 --move cube2=0.2,0,0.1 --move cube1=0.1,0,0";
+  const auto fresh = bake("fresh.exr", moves), live = bake("live.exr", moves + " --live"),
+             rest = bake("rest.exr");
+  EXPECT_EQ(fresh, live);
+  EXPECT_NE(fresh, rest);
+  EXPECT_EQ(fresh, bake("sum.exr", "--move cube1=-0.3,0.3,0 --move cube2=0.2,0,0.1"));
+}
+
+TEST_F(Bake, DumpsEveryPass) {
+  bake("E.exr", "--dump " + path("dump"));
+  for (const char* stage : {"geometry_texture.position", "emit_radiance.layer0",
+                            "stencil_routing.psf_irradiance", "blend.total_irradiance", "brdf.radiance"})
+    EXPECT_TRUE(std::filesystem::exists(folder_.path() / "dump" / (std::string(stage) + ".exr"))) << stage;
+}
+
+TEST(Info, ListsDevicesAndWhatASceneNeeds) {
+  const auto ran = run("info " + cornell);
+  EXPECT_EQ(ran.status, 0);
+  for (const char* words : {"llvmpipe", "samples a pixel      4 (8 stencil-routed layers take 2 passes)",
+                            "usable               yes", "cube1", "cube2", "valid texels"})
+    EXPECT_THAT(ran.output, HasSubstr(words));
+}
+
+TEST(Help, IsStatus0) {
+  EXPECT_EQ(run("--help").status, 0);
+  for (const char* command : {"bake", "serve", "info", "bench"})
+    EXPECT_EQ(run(std::string(command) + " --help").status, 0) << command;
+}
+
+}  // namespace
+}  // namespace lichtveld::testing
