@@ -1,3 +1,4 @@
+import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
 import { mkdirSync } from 'node:fs';
 import { join } from 'node:path';
@@ -19,9 +20,9 @@ function findBrowser() {
   throw new Error('no browser found: install chromium, or name one with CHROMIUM=/path/to/it');
 }
 
-/** A browser that ends with the test. Its pages come from `open`, each with a fresh profile. */
-export async function launch(t) {
-  const browser = await chromium.launch({
+/** A browser that WebRTC on this machine alone works in. */
+export function launchBrowser() {
+  return chromium.launch({
     executablePath: findBrowser(),
     args: [
       '--no-sandbox',
@@ -35,16 +36,42 @@ export async function launch(t) {
       '--disable-features=WebRtcHideLocalIpsWithMdns',
     ],
   });
-  t.after(() => browser.close());
-  return { open: (url, options) => Player.open(browser, url, options) };
+}
+
+/**
+ * A browser that ends with the test. Its pages come from `open`, each with a fresh profile; none may ever throw.
+ */
+export async function launch(t) {
+  const browser = await launchBrowser();
+  const players = [];
+  t.after(async () => {
+    await browser.close();
+    assert.deepEqual(
+      players.flatMap(({ thrown }) => thrown),
+      [],
+      'a page threw',
+    );
+  });
+  return {
+    /** @param {import('playwright-core').BrowserContextOptions & {init?: () => void}} [options]  see Player.open */
+    async open(url, options) {
+      const player = await Player.open(browser, url, options);
+      players.push(player);
+      return player;
+    },
+  };
 }
 
 /** One page in the room. */
 export class Player {
+  /** What the page's scripts threw and nobody caught, and what its console reports as errors. */
+  thrown = [];
   errors = [];
 
-  static async open(browser, url, options = { viewport: { width: 960, height: 640 } }) {
-    const context = await browser.newContext(options);
+  /** `init` runs in the page before its own scripts. */
+  static async open(browser, url, { init, ...options } = {}) {
+    const context = await browser.newContext({ viewport: { width: 960, height: 640 }, ...options });
+    if (init) await context.addInitScript(init);
     const player = new Player(await context.newPage());
     await player.page.goto(url);
     return player;
@@ -52,8 +79,8 @@ export class Player {
 
   constructor(page) {
     this.page = page;
-    page.on('pageerror', (error) => this.errors.push(error));
-    page.on('console', (message) => message.type() === 'error' && this.errors.push(new Error(message.text())));
+    page.on('pageerror', (error) => this.thrown.push(error));
+    page.on('console', (message) => message.type() === 'error' && this.errors.push(message.text()));
   }
 
   /** What the page knows: state, role, places, mapsReceived, error. */
@@ -94,14 +121,16 @@ export class Player {
     return { width, height, data: Uint8Array.from(data) };
   }
 
-  /** The light map once it has not changed for a second. */
-  async settledMap() {
+  /** The light map once it has not changed for some time. */
+  async settledMap(quietMs = 1000) {
     let last = await this.map();
-    for (let quiet = 0, tries = 0; quiet < 5; ++tries) {
-      if (tries > 100) throw new Error('the light map does not come to rest');
+    let since = Date.now();
+    const end = since + 20 * quietMs;
+    while (Date.now() - since < quietMs) {
+      if (Date.now() > end) throw new Error('the light map does not come to rest');
       await this.page.waitForTimeout(200);
       const map = await this.map();
-      quiet = Buffer.compare(map.data, last.data) === 0 ? quiet + 1 : 0;
+      if (Buffer.compare(map.data, last.data) !== 0) since = Date.now();
       last = map;
     }
     return last;
@@ -115,6 +144,14 @@ export class Player {
       if (done(await this.knows())) return;
     }
     throw new Error(`pressing ${key} leads nowhere; the page knows ${JSON.stringify(await this.knows())}`);
+  }
+
+  /** Ends the page's process, so that it can say no good-bye. */
+  async crash() {
+    const crashed = this.page.waitForEvent('crash');
+    const session = await this.page.context().newCDPSession(this.page);
+    session.send('Page.crash').catch(() => {});
+    await crashed;
   }
 
   /** Saves what the page looks like as build/e2e/NAME.png and answers with its pixels. */

@@ -3,28 +3,37 @@
 const luminance = (data, at) => 0.2126 * data[at] + 0.7152 * data[at + 1] + 0.0722 * data[at + 2];
 
 /** The change of one texel's luminance between two maps of one size, in steps of 8 bits; positive is brighter. */
-export const change = (before, after, { i, j }) => {
+const change = (before, after, { i, j }) => {
   const at = 4 * (j * before.width + i);
   return luminance(after.data, at) - luminance(before.data, at);
 };
 
 export const mean = (values) => values.reduce((sum, value) => sum + value, 0) / values.length;
 
+const median = (values) => [...values].sort((a, b) => a - b)[Math.floor(values.length / 2)];
+
+/** Where these texels are on average, in metres, weighted by how much they changed. */
+function centre(changes) {
+  const total = changes.reduce((sum, { by }) => sum + Math.abs(by), 0);
+  const along = (axis) => changes.reduce((sum, { at, by }) => sum + Math.abs(by) * at[axis], 0) / total;
+  return { texels: changes.length, x: along(0), z: along(2) };
+}
+
 /**
- * Where a cube's shadow went. Texels of the floor close to below the cube's old and new place are compared with the
- * floor elsewhere.
+ * Where a floor has become brighter and where darker. A shadow that moves leaves its old place brighter and makes the
+ * new one darker; the median's change is that of the exposure, which adapts to the room, and does not count.
  * @param {{position: number[], i: number, j: number}[]} floor
- * @param {number[]} from  [x, z] below the old place
- * @param {number[]} to    [x, z] below the new place
- * @param {number} radius  metres
+ * @param {number} tolerance  8-bit steps that are no change
  */
-export function shadowChange(before, after, floor, from, to, radius) {
-  const near = ({ position: [x, , z] }, place) => Math.hypot(x - place[0], z - place[1]) < radius;
-  const changesOf = (texels) => texels.map((texel) => change(before, after, texel));
+export function floorChange(before, after, floor, tolerance) {
+  const exposure = median(floor.map((texel) => change(before, after, texel)));
+  const changes = floor.map((texel) => ({
+    at: texel.position,
+    by: change(before, after, texel) - exposure,
+  }));
   return {
-    old: mean(changesOf(floor.filter((texel) => near(texel, from)))),
-    new: mean(changesOf(floor.filter((texel) => near(texel, to)))),
-    elsewhere: mean(changesOf(floor.filter((texel) => !near(texel, from) && !near(texel, to)))),
+    brighter: centre(changes.filter(({ by }) => by > tolerance)),
+    darker: centre(changes.filter(({ by }) => by < -tolerance)),
   };
 }
 

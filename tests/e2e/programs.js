@@ -8,10 +8,10 @@ import { fileURLToPath } from 'node:url';
 
 export const root = fileURLToPath(new URL('../..', import.meta.url));
 export const scenePath = join(root, 'assets/cornell.glb');
-const executable = resolve(process.env.LICHTVELD || join(root, 'build/release/lichtveld'));
+export const executable = resolve(process.env.LICHTVELD || join(root, 'build/release/lichtveld'));
 
-/** Small, for speed: what is tested is the way of the light, not its beauty. */
-const serveOptions = ['--size', '128', '--psf', '24', '--bounces', '1'];
+/** Small, for speed: what is tested is the way of the light, not its beauty. Fewer PSFs show no shadow on the floor. */
+const quick = ['--size', '128', '--psf', '96', '--bounces', '1'];
 
 export async function freePort() {
   const probe = createServer().listen(0, '127.0.0.1');
@@ -57,34 +57,37 @@ class Program {
 }
 
 /** The room's programs as `./dev play` runs them, from the moment of their start. */
-export function startPlay(t, { port, serveOptions: more = [], env = {} }) {
-  const args = ['--port', String(port), '--scene', scenePath, '--', ...serveOptions, ...more];
+export function startPlay(t, { port, serveOptions = quick, env = {} }) {
+  const args = ['--port', String(port), '--scene', scenePath, '--', ...serveOptions];
   return new Program(t, 'play', process.execPath, [join(root, 'tools/play.mjs'), ...args], env);
 }
 
 /** The whole room, ready to be joined. */
-export async function play(t) {
+export async function play(t, serveOptions = quick) {
   const port = await freePort();
-  await startPlay(t, { port }).says(`ready http://127.0.0.1:${port}\n`);
+  await startPlay(t, { port, serveOptions }).says(`ready http://127.0.0.1:${port}\n`);
   return { url: `http://127.0.0.1:${port}` };
 }
 
-/** Signaling alone; `serve` starts a render server for it, as often as wanted. */
-export async function signaling(t) {
+/**
+ * Signaling alone; `serve` starts a render server for it.
+ * @param {{scene?: string, options?: string[]}} [more]  another scene file for the pages, more arguments
+ */
+export async function signaling(t, { scene = scenePath, options = [] } = {}) {
   const port = await freePort();
   const folder = mkdtempSync(join(tmpdir(), 'lichtveld-e2e-'));
   const token = join(folder, 'token');
   writeFileSync(token, 'a-secret-for-tests\n', { mode: 0o600 });
   const client = join(root, 'web-client/dist');
-  const files = ['--token-file', token, '--client', client, '--scene', scenePath];
-  const program = new Program(t, 'signaling', process.execPath, [
-    join(root, 'signaling/main.js'),
-    '--port',
-    String(port),
-    ...files,
-  ]);
+  const files = ['--token-file', token, '--client', client, '--scene', scene, ...options];
+  const args = [join(root, 'signaling/main.js'), '--port', String(port), ...files];
+  const relay = async () => {
+    const program = new Program(t, 'signaling', process.execPath, args);
+    await program.says('signaling listens on');
+    return program;
+  };
+  const first = await relay();
   t.after(() => rmSync(folder, { recursive: true }));
-  await program.says('signaling listens on');
   const serveArgs = [
     'serve',
     '--scene',
@@ -96,6 +99,9 @@ export async function signaling(t) {
   ];
   return {
     url: `http://127.0.0.1:${port}`,
-    serve: () => new Program(t, 'server', executable, [...serveArgs, '--bind', '127.0.0.1', ...serveOptions]),
+    /** The running relay, and a way to start another in its place. */
+    first,
+    relay,
+    serve: () => new Program(t, 'server', executable, [...serveArgs, '--bind', '127.0.0.1', ...quick]),
   };
 }

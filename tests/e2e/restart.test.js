@@ -48,3 +48,23 @@ test('the render server is killed and started again: light again, without a relo
   assert.deepEqual(cubes.sort(), [1, 2]);
   await players[0].screenshot('server-back');
 });
+
+test('the relay is killed: those who are in play on, and it is found again when it is back', async (t) => {
+  const { url, serve, first, relay } = await signaling(t);
+  serve();
+  const browser = await launch(t);
+  const player = await browser.open(url);
+  const { places } = await player.lit(60_000);
+
+  first.child.kill('SIGKILL');
+  await first.exited;
+  await player.press('ArrowUp', (known) => known.places[0].y > places[0].y);
+  assert.equal((await player.knows()).state, 'live');
+  assert.equal(await player.page.locator('#trouble').isVisible(), false);
+
+  await relay();
+  const late = await browser.open(url);
+  const { role } = await late.lit(60_000);
+  assert.deepEqual([role.cube, role.players], [2, 2]);
+  assert.equal((await player.knows()).state, 'live');
+});

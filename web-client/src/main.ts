@@ -107,6 +107,9 @@ function start(room: Room): void {
     view.arrowButtons,
   );
   addEventListener('resize', () => room.resize());
+  addEventListener('pagehide', () => session.leave());
+  // Out of the back/forward cache the page goes on where it was, without having been loaded.
+  addEventListener('pageshow', ({ persisted }) => persisted && session.comeBack());
   setInterval(() => view.showFacts(statistics), 250);
 
   let last = performance.now();

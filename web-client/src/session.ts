@@ -55,6 +55,18 @@ export class Session {
     this.#peer?.send(direction);
   }
 
+  /** The page goes, perhaps for good: says so to both ends instead of letting them find out by silence. */
+  leave(): void {
+    this.#dropPeer();
+    this.#leaveRelay();
+  }
+
+  /** The page is back after `leave`. */
+  comeBack(): void {
+    this.#backoff.reset();
+    this.#connect();
+  }
+
   #connect(): void {
     this.#leaveRelay();
     if (!this.#peer) this.events.onState('connecting', { reason: '' });

@@ -1,0 +1,134 @@
+#!/usr/bin/env node
+/**
+ * Redraws docs/pictures: two browsers in one room, and what each pass makes of the Cornell room. Needs the built render
+ * server and web client, a Chromium and oiiotool; `./dev pictures` sees to that and to a network in which they meet.
+ *
+ *   tests/e2e/own_network.sh node tools/pictures.mjs
+ *
+ * LICHTVELD names another render server than build/release/lichtveld. What can be seen on a picture is told in
+ * docs/algorithm.md; a picture of a light map has two pixels a texel, without filtering.
+ */
+import { execFileSync } from 'node:child_process';
+import { mkdirSync, mkdtempSync, rmSync, statSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join, relative } from 'node:path';
+import { PNG } from 'pngjs';
+import { launch } from '../tests/e2e/browser.js';
+import { executable, play, root, scenePath } from '../tests/e2e/programs.js';
+
+const folder = join(root, 'docs/pictures');
+const quality = ['--size', '256', '--psf', '384', '--bounces', '3'];
+/** Light on its way down, to the right and out of the room: the blocks' shadows fall on walls that it reaches. */
+const shownPsf = 188;
+/** Bytes: pictures travel with every clone. */
+const largest = 300_000;
+const gap = 12;
+
+const oiiotool = (...args) =>
+  execFileSync('oiiotool', args.map(String), { stdio: ['ignore', 'inherit', 'inherit'] });
+const twice = ['--resize:filter=box', '200%', '-d', 'uint8'];
+const grey = ['--ch', '0,0,0', '--chnames', 'R,G,B'];
+/** Linear light to the screen's 8 bits; `exposure` maps it to 0..1. */
+const light = (exposure) => ['--ch', 'R,G,B', '--mulc', exposure, '--colorconvert', 'linear', 'sRGB', ...twice];
+
+/** The output of every pass, from a bake that writes them down. */
+function drawPasses() {
+  const work = mkdtempSync(join(tmpdir(), 'lichtveld-pictures-'));
+  try {
+    const dump = [
+      '--dump',
+      work,
+      '--dump-psf',
+      shownPsf,
+      '--out',
+      join(work, 'E.exr'),
+      '--png',
+      join(work, 'map.png'),
+    ];
+    const args = ['bake', scenePath, ...quality, '--abuffer', 'list', ...dump];
+    execFileSync(executable, args.map(String), { stdio: 'inherit' });
+    const exr = (name) => join(work, `${name}.exr`);
+    const png = (name) => join(folder, `${name}.png`);
+    const sheet = [`--mosaic:pad=${gap}`, '2x2'];
+
+    // Black outside the charts, where alpha is 0.
+    const onCharts = (name, ...scaling) => [
+      ...[exr(name), '--ch', 'R,G,B', ...scaling],
+      ...[exr('geometry_texture.position'), '--ch', 'A,A,A', '--chnames', 'R,G,B', '--mul', ...twice],
+    ];
+    oiiotool(
+      // The room is 5.6 m wide and deep, 5.488 m high, and its floor is at y = 0.
+      ...onCharts('geometry_texture.position', '--addc', '2.8,0,2.8', '--mulc', 1 / 5.6),
+      ...onCharts('geometry_texture.normal', '--mulc', 0.5, '--addc', 0.5),
+      ...[exr('geometry_texture.albedo'), ...light(1), exr('geometry_texture.emission'), ...light(0.1)],
+      ...[...sheet, '-o', png('geometry_texture')],
+    );
+    // Depth is -1..1 along the direction, 4 where there is nothing: bright is where the light comes from.
+    const depth = ['--ch', 'A', '--mulc', -0.4, '--addc', 0.6, ...twice, ...grey];
+    const layer = (n) => [exr(`emit_radiance.layer${n}`), ...depth];
+    const lamp = [exr('emit_radiance.layer0'), ...light(0.1)];
+    oiiotool(...layer(0), ...layer(1), ...layer(2), ...lamp, ...sheet, '-o', png('emit_radiance'));
+    // One of 384 directions brings this share of a texel's irradiance.
+    oiiotool(exr('stencil_routing.psf_irradiance'), ...light(2.5), '-o', png('stencil_routing'));
+    oiiotool(exr('blend.total_irradiance'), ...light(0.04), '-o', png('blend'));
+    oiiotool(exr('brdf.radiance'), ...light(0.125), '-o', png('brdf'));
+    oiiotool(join(work, 'map.png'), ...twice, '-o', png('tone_map'));
+  } finally {
+    rmSync(work, { recursive: true });
+  }
+}
+
+/** Two players in one room, after each has moved a cube. */
+async function drawTwoBrowsers() {
+  const afterwards = [];
+  const t = { after: (task) => afterwards.push(task), diagnostic: () => {} };
+  try {
+    const { url } = await play(t, quality);
+    const browser = await launch(t);
+    const players = [];
+    for (const cube of [1, 2]) {
+      const player = await browser.open(url, { viewport: { width: 800, height: 600 } });
+      await player.until('a player', ({ state, role }) => state === 'live' && role?.cube === cube);
+      players.push(player);
+    }
+    for (const [n, player] of players.entries()) {
+      const { places, mapsReceived } = await player.lit(120_000);
+      await player.page.keyboard.press('ArrowUp');
+      // Each place comes with the map that shows it.
+      const isLit = (known) => known.places[n].y > places[n].y && known.mapsReceived > mapsReceived;
+      for (const each of players) await each.until('it has moved', isLit, 120_000);
+    }
+    await players[0].page.waitForTimeout(500); // the cubes glide
+    const [left, right] = await Promise.all(
+      players.map(async ({ page }) => PNG.sync.read(await page.screenshot())),
+    );
+    const both = new PNG({ width: left.width + gap + right.width, height: left.height });
+    PNG.bitblt(left, both, 0, 0, left.width, left.height, 0, 0);
+    PNG.bitblt(right, both, 0, 0, right.width, right.height, left.width + gap, 0);
+    writeFileSync(
+      join(folder, 'two-browsers.png'),
+      PNG.sync.write(both, { colorType: 2, filterType: 4, deflateStrategy: 0 }),
+    );
+  } finally {
+    for (const task of afterwards.reverse()) await task();
+  }
+}
+
+mkdirSync(folder, { recursive: true });
+drawPasses();
+await drawTwoBrowsers();
+const names = [
+  'geometry_texture',
+  'emit_radiance',
+  'stencil_routing',
+  'blend',
+  'brdf',
+  'tone_map',
+  'two-browsers',
+];
+for (const name of names) {
+  const path = join(folder, `${name}.png`);
+  const { size } = statSync(path);
+  console.log(`${relative(root, path)}: ${Math.ceil(size / 1000)} kB`);
+  if (size > largest) throw new Error(`${path} has ${size} bytes, more than ${largest}: make it smaller`);
+}
