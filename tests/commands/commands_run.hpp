@@ -16,8 +16,9 @@ struct Ran {
 };
 
 // `environment` is put before the command, as in a shell: "NAME=value ".
-inline Ran run(const std::string& arguments, const std::string& environment = "") {
-  const std::string command = environment + " timeout 60 " LICHTVELD_BINARY " " + arguments + " 2>&1";
+// It is ended after so many seconds.
+inline Ran run(const std::string& arguments, const std::string& environment = "", int seconds = 60) {
+  const std::string command = environment + " timeout " + std::to_string(seconds) + " " LICHTVELD_BINARY " " + arguments + " 2>&1";
   FILE* pipe = popen(command.c_str(), "r");
   if (pipe == nullptr) throw std::runtime_error("cannot run " + command);
   Ran ran;

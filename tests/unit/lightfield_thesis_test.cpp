@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "device_for_tests.hpp"
+#include "image_error.hpp"
 #include "lichtveld/lightfield/thesis.hpp"
 #include "scene_builder.hpp"
 
@@ -73,14 +74,7 @@ class ThesisMethod : public lichtveld::testing::WithDevice {
 };
 
 double rel_rmse(const Baked& a, const Baked& b) {
-  double squares = 0, sum = 0;
-  for (std::size_t texel = 0; texel < a.irradiance.size(); ++texel)
-    for (int channel = 0; channel < 3; ++channel) {
-      const double difference = a.irradiance[texel][channel] - b.irradiance[texel][channel];
-      squares += difference * difference;
-      sum += b.irradiance[texel][channel];
-    }
-  return std::sqrt(squares * 3.0 * b.solution.texels_valid) / sum;  // zero outside the charts
+  return lichtveld::testing::rel_rmse(a.irradiance, b.irradiance);
 }
 
 // Every wall sees pi * Le * (1 + rho + rho^2 + ..) : rows sum to one, so that nothing but a miss can spoil it.

@@ -1,0 +1,41 @@
+// How near the direction counts that are meant for use come to the largest one, same bounces.
+#include <OpenImageIO/imagebuf.h>
+#include <gtest/gtest.h>
+
+#include "commands_run.hpp"
+#include "image_error.hpp"
+#include "scene_builder.hpp"
+
+namespace lichtveld::testing {
+namespace {
+
+std::vector<glm::vec4> bake(const TempFolder& folder, int size, int psf) {
+  const auto file = (folder.path() / "E.exr").string();
+  const auto ran = run("bake " + cornell + " --bounces 2 --abuffer list --sort scan --size " + std::to_string(size) +
+                           " --psf " + std::to_string(psf) + " --out " + file,
+                       "", 300);
+  EXPECT_EQ(ran.status, 0) << ran.output;
+  std::vector<glm::vec4> values(static_cast<std::size_t>(size) * size);
+  OIIO::ImageBuf(file).get_pixels(OIIO::ROI::All(), OIIO::TypeDesc::FLOAT, values.data());
+  return values;
+}
+
+struct Demand {
+  int size;
+  double most;
+};
+
+class Accuracy : public ::testing::TestWithParam<Demand> {};
+
+TEST_P(Accuracy, Of384DirectionsAgainst6144) {
+  const TempFolder folder;
+  const double error = rel_rmse(bake(folder, GetParam().size, 384), bake(folder, GetParam().size, 6144));
+  std::printf("size %d: rel_rmse of 384 PSFs against 6144 is %.4f\n", GetParam().size, error);
+  EXPECT_LT(error, GetParam().most);
+}
+
+INSTANTIATE_TEST_SUITE_P(Cornell, Accuracy, ::testing::Values(Demand{128, 0.12}, Demand{256, 0.08}),
+                         [](const auto& demand) { return "size" + std::to_string(demand.param.size); });
+
+}  // namespace
+}  // namespace lichtveld::testing
