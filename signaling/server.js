@@ -139,6 +139,8 @@ export async function startSignaling({ log = () => {}, allowedOrigins = [], ...o
     async close() {
       clearInterval(heartbeat);
       const closed = new Promise((resolve) => http.close(resolve));
+      // All in one go, so that nobody hears of the others' leaving: the render server would end the sessions of clients
+      // that it took for gone, and those go on without us.
       for (const connection of connections.values())
         connection.close(1001, 'the signaling server is shutting down');
       setTimeout(() => http.closeAllConnections(), limits.closeTimeoutMs).unref();

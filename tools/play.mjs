@@ -5,11 +5,15 @@
  *
  *   node tools/play.mjs [--host 127.0.0.1] [--port 8080] [--scene assets/cornell.glb] [-- SERVE OPTIONS]
  *
+ * --host is a name or address of this machine, for the page and for WebRTC; 0.0.0.0 or :: takes every address (WebRTC
+ * then uses all but the loopback ones).
+ *
  * LICHTVELD names another render server than build/release/lichtveld. Exit codes: 0 ended by a signal, 2 bad usage or
  * input (a busy port, say), else the code of the program that died.
  */
 import { spawn } from 'node:child_process';
 import { randomBytes } from 'node:crypto';
+import { lookup } from 'node:dns/promises';
 import { existsSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { dirname, join, resolve } from 'node:path';
@@ -24,7 +28,7 @@ const patience = 5000;
 
 const say = (text) => process.stderr.write(`play: ${text}\n`);
 
-function readOptions() {
+async function readOptions() {
   const split = process.argv.indexOf('--');
   const own = process.argv.slice(2, split < 0 ? undefined : split);
   const serveOptions = split < 0 ? [] : process.argv.slice(split + 1);
@@ -45,7 +49,12 @@ function readOptions() {
     [join(root, 'web-client/dist/index.html'), 'build it with npm run build --workspace web-client'],
   ])
     if (!existsSync(path)) throw new Error(`${path} is missing: ${hint}`);
-  return { ...values, executable, serveOptions };
+  const host = values.host || '0.0.0.0';
+  // One address for all: WebRTC binds to no name, and a name may have several addresses.
+  const { address } = await lookup(host, { verbatim: false }).catch((error) => {
+    throw new Error(`--host ${host} is no known host (${error.code}): give an address of this machine`);
+  });
+  return { ...values, host, address, executable, serveOptions };
 }
 
 /** Where somebody on this machine reaches what listens on `host`. */
@@ -135,7 +144,7 @@ async function untilServed(company, url) {
 
 let options;
 try {
-  options = readOptions();
+  options = await readOptions();
 } catch (error) {
   say(error.message);
   process.exit(2);
@@ -145,15 +154,15 @@ const company = new Company();
 process.on('exit', () => company.removeFiles());
 for (const signal of ['SIGINT', 'SIGTERM', 'SIGHUP']) process.on(signal, () => company.finish(0));
 
-const { host, port, scene, executable, serveOptions } = options;
+const { host, address, port, scene, executable, serveOptions } = options;
 const token = company.writeToken();
-const address = `${urlHost(host)}:${port}`;
+const authority = `${urlHost(host)}:${port}`;
 const client = join(root, 'web-client/dist');
 // Only its own word counts: whatever answers on that port may be somebody else's.
 await new Promise((listening) => {
   const args = [
     '--host',
-    host,
+    address,
     '--port',
     port,
     '--token-file',
@@ -171,11 +180,11 @@ const args = [
   '--scene',
   resolve(scene),
   '--signaling',
-  `ws://${address}/server`,
+  `ws://${authority}/server`,
   '--token-file',
   token,
   '--bind',
-  host,
+  address,
 ];
 company.start('server', executable, ['serve', ...args, ...serveOptions]);
-if (await untilServed(company, `http://${address}`)) console.log(`ready http://${address}`);
+if (await untilServed(company, `http://${authority}`)) console.log(`ready http://${authority}`);

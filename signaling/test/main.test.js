@@ -6,7 +6,7 @@ import { join } from 'node:path';
 import { test } from 'node:test';
 import { writeFileSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
-import { makeSite } from './harness.js';
+import { makeSite, populate } from './harness.js';
 
 const main = fileURLToPath(new URL('../main.js', import.meta.url));
 
@@ -62,11 +62,19 @@ test('bad arguments and files end with 2 and name the culprit', async (t) => {
   }
 });
 
-test('SIGTERM ends it quickly with 0', async (t) => {
+test('SIGTERM ends it quickly with 0, and nobody takes the others for gone', async (t) => {
   const { child, exited, output } = run(t, argsOf(makeSite(t)));
   while (!output.out.includes('listens on')) await once(child.stdout, 'data');
+  const [, port] = output.out.match(/:(\d+)\n/);
+  const { server, clients } = await populate({ ws: `ws://127.0.0.1:${port}` }, 3);
+  const heard = [];
+  for (const peer of [server, ...clients.map(({ peer }) => peer)])
+    peer.socket.on('message', (data) => heard.push(String(data)));
   const begin = Date.now();
   child.kill('SIGTERM');
   assert.equal((await exited).code, 0);
   assert.ok(Date.now() - begin < 2000);
+  assert.equal((await server.closed).code, 1001);
+  for (const { peer } of clients) assert.equal((await peer.closed).code, 1001);
+  assert.deepEqual(heard, []);
 });

@@ -83,8 +83,8 @@ DeviceSummary summarise(const vk::raii::PhysicalDevice& physical) {
   summary.max_image_size = limits.maxImageDimension2D;
   summary.max_storage_buffer = limits.maxStorageBufferRange;
   summary.subgroup_size = chain.get<vk::PhysicalDeviceSubgroupProperties>().subgroupSize;
-  for (const auto& heap : std::span(physical.getMemoryProperties().memoryHeaps.data(),
-                                    physical.getMemoryProperties().memoryHeapCount))
+  const auto memory = physical.getMemoryProperties();
+  for (const auto& heap : std::span(memory.memoryHeaps.data(), memory.memoryHeapCount))
     if (heap.flags & vk::MemoryHeapFlagBits::eDeviceLocal) summary.memory += heap.size;
   summary.missing = missing_features(physical);
   return summary;

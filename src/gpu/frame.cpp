@@ -18,9 +18,6 @@ void push_descriptors(const vk::raii::CommandBuffer& commands, const Pipeline& p
   std::vector<vk::DescriptorImageInfo> images(bindings.size());
   std::vector<vk::DescriptorBufferInfo> buffers(bindings.size());
   std::vector<vk::WriteDescriptorSet> writes;
-  constexpr vk::DescriptorType types[] = {vk::DescriptorType::eCombinedImageSampler,
-                                          vk::DescriptorType::eStorageImage,
-                                          vk::DescriptorType::eStorageBuffer};
   for (std::uint32_t index = 0; index < bindings.size(); ++index) {
     const Binding& binding = bindings[index];
     assert(binding.kind == pipeline.kinds()[index]);
@@ -34,7 +31,7 @@ void push_descriptors(const vk::raii::CommandBuffer& commands, const Pipeline& p
       buffers[index] = vk::DescriptorBufferInfo{.buffer = binding.buffer->handle(), .range = VK_WHOLE_SIZE};
     writes.push_back({.dstBinding = index,
                       .descriptorCount = 1,
-                      .descriptorType = types[static_cast<int>(binding.kind)],
+                      .descriptorType = descriptor_type(binding.kind),
                       .pImageInfo = &images[index],
                       .pBufferInfo = &buffers[index]});
   }

@@ -6,11 +6,6 @@ namespace lichtveld::gpu {
 
 namespace {
 
-// Descriptor types by Kind.
-constexpr vk::DescriptorType descriptor_types[] = {vk::DescriptorType::eCombinedImageSampler,
-                                                   vk::DescriptorType::eStorageImage,
-                                                   vk::DescriptorType::eStorageBuffer};
-
 vk::ShaderStageFlags stages_of(vk::PipelineBindPoint bind_point) {
   return bind_point == vk::PipelineBindPoint::eCompute ? vk::ShaderStageFlagBits::eCompute
                                                        : vk::ShaderStageFlagBits::eAllGraphics;
@@ -40,13 +35,20 @@ class Specialisation {
 
 }  // namespace
 
+vk::DescriptorType descriptor_type(Kind kind) {
+  constexpr vk::DescriptorType types[] = {vk::DescriptorType::eCombinedImageSampler,
+                                          vk::DescriptorType::eStorageImage,
+                                          vk::DescriptorType::eStorageBuffer};
+  return types[static_cast<int>(kind)];
+}
+
 Pipeline::Pipeline(const Device& device, std::string name, const Interface& interface,
                    vk::PipelineBindPoint bind_point)
     : name_(std::move(name)), kinds_(interface.kinds), bind_point_(bind_point) {
   std::vector<vk::DescriptorSetLayoutBinding> bindings;
   for (std::uint32_t index = 0; index < kinds_.size(); ++index)
     bindings.push_back({.binding = index,
-                        .descriptorType = descriptor_types[static_cast<int>(kinds_[index])],
+                        .descriptorType = descriptor_type(kinds_[index]),
                         .descriptorCount = 1,
                         .stageFlags = stages_of(bind_point)});
   set_layout_ = {device.handle(), vk::DescriptorSetLayoutCreateInfo{

@@ -15,11 +15,9 @@ inline constexpr std::size_t peers = 64;
 // A peer's channel has to open within this time of its offer; on a bad network ICE takes a few seconds.
 inline constexpr auto open_time = 15s;
 
-// A peer that takes nothing from a full queue for this long has vanished. SCTP itself gives up after some 13 s.
+// A peer that takes nothing from a full queue for this long has vanished, should nobody else have noticed:
+// signaling says at once that a client is gone, SCTP itself gives up after some 13 s.
 inline constexpr auto stall_time = 15s;
-
-// The same once signaling says that the client's socket has closed: most likely its tab has, too.
-inline constexpr auto stall_time_when_gone = 3s;
 
 // The cubes' places go to everyone this often; the protocol asks for once a second.
 inline constexpr auto places_interval = 500ms;

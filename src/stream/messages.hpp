@@ -5,7 +5,7 @@
 //   relay  -> server   {"type":"welcome","id":OWN}                            greeting
 //   client -> server   {"id":C,"type":"offer","description":SDP}
 //   client -> server   {"id":C,"type":"candidate","candidate":LINE,"mid":"0"}
-//   relay  -> server   {"id":C,"type":"gone"}                                 the client's socket has closed
+//   relay  -> server   {"id":C,"type":"gone"}                                 the client has left
 //   server -> client   {"id":C,"type":"answer","description":SDP}
 //   server -> client   {"id":C,"type":"candidate","candidate":LINE,"mid":"0"}
 //   server -> client   {"id":C,"type":"role","cube":0|1|2,"players":N,"watchers":M}   0 = watching

@@ -80,8 +80,7 @@ void Server::Room::tick() {
     }
     peer.send_places(places);
     collect(peer);
-    const auto patience = guest->second.gone ? limits::stall_time_when_gone : limits::stall_time;
-    if (now - peer.outbox().last_empty() > patience) drop(guest, "it takes nothing any more");
+    if (now - peer.outbox().last_empty() > limits::stall_time) drop(guest, "it takes nothing any more");
   }
   tick_.expires_after(limits::places_interval);
   tick_.async_wait([this](boost::system::error_code error) {

@@ -40,7 +40,6 @@ struct Server::Room final : PeerListener {
   struct Guest {
     std::unique_ptr<Peer> peer;
     std::string signaling_id;  // as in the present connection to signaling; empty once that is lost
-    bool gone = false;         // signaling says that the client's socket has closed
     std::optional<Role> told;
     std::size_t candidates_in = 0, candidates_out = 0, refusals = 0;
     TokenBucket moves{limits::moves_per_second, limits::moves_burst};

@@ -1,68 +1,32 @@
 // Each damaged or hostile file gets a message that names what is wrong; none crashes, hangs or takes memory.
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <chrono>
 #include <functional>
 #include <random>
 #include <sstream>
 
 #include "lichtveld/scene/scene.hpp"
-#include "scene_builder.hpp"
+#include "scene_damage.hpp"
+#include "scene_log.hpp"
 
 namespace lichtveld::scene {
 namespace {
 
 using nlohmann::json;
-using testing::SceneBuilder;
-using testing::TempFolder;
+using testing::LogCapture;
 
-std::string error_of(const std::filesystem::path& file) {
-  try {
-    load(file);
-  } catch (const SceneError& e) {
-    return e.what();
-  }
-  return "no error";
-}
-
-std::string error_of_bytes(const std::string& bytes, const std::string& name = "scene.glb") {
-  const TempFolder folder;
-  return error_of(folder.write(name, bytes));
-}
-
-// A floor and a child node; accessors: 0 POSITION, 1 TEXCOORD_1, 2 indices.
-SceneBuilder sound() {
-  SceneBuilder builder;
-  builder.quad("floor", {glm::vec3{-1, 0, 1}, {1, 0, 1}, {1, 0, -1}, {-1, 0, -1}}, {0.1f, 0.1f, 0.9f, 0.9f},
-               builder.material({0.5f, 0.5f, 0.5f}, {1, 1, 1}));
-  builder.gltf["nodes"].push_back({{"name", "child"}});
-  builder.gltf["nodes"][0]["children"] = {1};
-  return builder;
-}
-
-struct BadCase {
-  const char* name;
-  std::function<void(SceneBuilder&)> spoil;
-  const char* message;
+class SceneBadInput : public ::testing::Test {
+ protected:
+  LogCapture log_;  // of each test's own
 };
 
-template <typename T>
-void overwrite(SceneBuilder& builder, std::size_t accessor, std::size_t element, T value) {
-  const json& view =
-      builder.gltf["bufferViews"][builder.gltf["accessors"][accessor]["bufferView"].get<std::size_t>()];
-  const auto bytes = reinterpret_cast<const char*>(&value);
-  builder.bin.replace(view["byteOffset"].get<std::size_t>() + element * sizeof value, sizeof value, bytes,
-                      sizeof value);
-}
-
-json& attributes(SceneBuilder& b) {
-  return b.primitive(0)["attributes"];
-}
 json nested(int depth) {
   return depth ? json::array({nested(depth - 1)}) : json::array();
 }
 
-const std::vector<BadCase> kCases = {
+const std::vector<SpoiltCase> kCases = {
     {"NoAtlas", [](auto& b) { attributes(b).erase("TEXCOORD_1"); },
      "node \"floor\", primitive 0 has no TEXCOORD_1: unwrap"},
     {"NoPosition", [](auto& b) { attributes(b).erase("POSITION"); }, "primitive 0 has no POSITION"},
@@ -220,12 +184,13 @@ const std::vector<BadCase> kCases = {
      "node \"a?[2J\""},
 };
 
-TEST(SceneBadInput, TheUnspoiltSceneLoads) {
+TEST_F(SceneBadInput, TheUnspoiltSceneLoads) {
   EXPECT_EQ(error_of_bytes(sound().glb()), "no error");
+  EXPECT_EQ(log_.take(), "") << "and there is nothing to complain of";
 }
 
-TEST(SceneBadInput, EachIsNamed) {
-  for (const BadCase& bad : kCases) {
+TEST_F(SceneBadInput, EachIsNamed) {
+  for (const SpoiltCase& bad : kCases) {
     SceneBuilder builder = sound();
     bad.spoil(builder);
     const std::string error = error_of_bytes(builder.glb());
@@ -234,7 +199,7 @@ TEST(SceneBadInput, EachIsNamed) {
   }
 }
 
-TEST(SceneBadInput, FilesThatAreNone) {
+TEST_F(SceneBadInput, FilesThatAreNone) {
   const TempFolder folder;
   EXPECT_THAT(error_of(folder.path() / "absent.glb"), ::testing::HasSubstr("absent.glb: no such file"));
   EXPECT_THAT(error_of(folder.path()), ::testing::HasSubstr("not a file"));
@@ -246,7 +211,7 @@ TEST(SceneBadInput, FilesThatAreNone) {
   EXPECT_THAT(error_of_bytes(std::string(1 << 20, '['), "scene.gltf"), ::testing::HasSubstr("nests deeper"));
 }
 
-TEST(SceneBadInput, EveryTruncationIsAnError) {
+TEST_F(SceneBadInput, EveryTruncationIsAnError) {
   const std::string bytes = sound().glb();
   const TempFolder folder;
   for (std::size_t size = 0; size < bytes.size(); size += 7) {
@@ -254,7 +219,7 @@ TEST(SceneBadInput, EveryTruncationIsAnError) {
   }
 }
 
-TEST(SceneBadInput, LyingChunkLengths) {
+TEST_F(SceneBadInput, LyingChunkLengths) {
   const std::string bytes = sound().glb();
   const auto json_bytes = static_cast<std::size_t>(bytes.find("BIN")) - 4;
   for (const std::size_t at : {std::size_t{8}, std::size_t{12}, json_bytes}) {
@@ -267,7 +232,7 @@ TEST(SceneBadInput, LyingChunkLengths) {
   EXPECT_THAT(error_of_bytes(longer), ::testing::HasSubstr("chunk 1 is longer than the file"));
 }
 
-TEST(SceneBadInput, LinksOutOfTheFolderAreNotFollowed) {
+TEST_F(SceneBadInput, LinksOutOfTheFolderAreNotFollowed) {
   const TempFolder folder, outside;
   outside.write("secret.bin", std::string(4096, 'x'));
   std::filesystem::create_symlink(outside.path() / "secret.bin", folder.path() / "mesh.bin");
@@ -277,7 +242,7 @@ TEST(SceneBadInput, LinksOutOfTheFolderAreNotFollowed) {
 }
 
 // Random damage to the shipped scene: either it loads into a consistent scene or it is refused.
-TEST(SceneBadInput, RandomDamage) {
+TEST_F(SceneBadInput, RandomDamage) {
   std::ifstream in(LICHTVELD_SOURCE_DIR "/assets/cornell.glb", std::ios::binary);
   std::stringstream text;
   text << in.rdbuf();

@@ -6,9 +6,9 @@ using nlohmann::json;
 
 namespace {
 
-rtc::Configuration configuration() {
+rtc::Configuration configuration(const std::string& bind_address) {
   rtc::Configuration config;
-  config.bindAddress = "127.0.0.1";
+  config.bindAddress = bind_address;
   return config;
 }
 
@@ -23,15 +23,20 @@ void Client::Inbox::send(json message) {
 
 void Client::Inbox::received(const json& message, rtc::PeerConnection& connection, bool through_link) {
   const std::string type = message.at("type");
+  const std::lock_guard calls_lock(calls);
   if (type == "answer") {
     connection.setRemoteDescription(rtc::Description(message.at("description").get<std::string>(), "answer"));
   } else if (type == "candidate") {
     rtc::Candidate candidate(message.at("candidate").get<std::string>(), message.at("mid").get<std::string>());
-    if (through_link) {
-      candidate.resolve();
+    {
       const std::lock_guard lock(mutex);
-      link = std::make_unique<Link>(*candidate.port());
-      candidate.changeAddress("127.0.0.1", link->port());
+      state.candidates.push_back(candidate.candidate());
+      changed.notify_all();
+      if (through_link) {
+        candidate.resolve();
+        link = std::make_unique<Link>(*candidate.port());
+        candidate.changeAddress("127.0.0.1", link->port());
+      }
     }
     connection.addRemoteCandidate(candidate);
   } else {
@@ -42,7 +47,7 @@ void Client::Inbox::received(const json& message, rtc::PeerConnection& connectio
 }
 
 Client::Client(Relay& relay, Options options)
-    : connection_(std::make_shared<rtc::PeerConnection>(configuration())) {
+    : connection_(std::make_shared<rtc::PeerConnection>(configuration(options.bind_address))) {
   inbox_->relay = &relay;
   inbox_->id = id_ = relay.attach([inbox = inbox_, weak = std::weak_ptr(connection_),
                                    through_link = options.through_link](const json& message) {
@@ -60,7 +65,10 @@ Client::Client(Relay& relay, Options options)
   rtc::DataChannelInit init;
   init.protocol = options.protocol;
   init.reliability = options.reliability;
-  channel_ = connection_->createDataChannel(options.label, init);
+  {
+    const std::lock_guard lock(inbox_->calls);
+    channel_ = connection_->createDataChannel(options.label, init);
+  }
   const auto change = [inbox = inbox_](auto&& what) {
     const std::lock_guard lock(inbox->mutex);
     what(*inbox);

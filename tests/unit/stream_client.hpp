@@ -22,13 +22,15 @@ class Client {
     std::string protocol = "";
     rtc::Reliability reliability = {};
     bool through_link = false;  // all that it sends and gets goes through link()
+    std::string bind_address = "127.0.0.1";
   };
   struct State {
     bool open = false, closed = false;
     std::vector<std::string> texts;  // but PNG_TRANSFER_COMPLETE
     std::vector<rtc::binary> maps;
     std::size_t texts_before_first_chunk = 0;
-    nlohmann::json role;  // the last
+    nlohmann::json role;                  // the last
+    std::vector<std::string> candidates;  // the server's
   };
 
   explicit Client(Relay& relay) : Client(relay, Options()) {}
@@ -65,7 +67,9 @@ class Client {
  private:
   // Shared with callbacks that may still run while the client ends.
   struct Inbox {
-    std::mutex mutex;
+    // An answer must not come to the library while it is still making the offer.
+    std::mutex calls;
+    std::mutex mutex;  // guards what follows
     std::condition_variable changed;
     State state;
     rtc::binary map;

@@ -7,13 +7,8 @@
 #include <unistd.h>
 
 #include <array>
-#include <boost/asio/co_spawn.hpp>
-#include <boost/asio/detached.hpp>
 #include <boost/asio/post.hpp>
-#include <boost/asio/redirect_error.hpp>
-#include <boost/asio/use_awaitable.hpp>
 #include <boost/beast/core/buffers_to_string.hpp>
-#include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket.hpp>
 #include <nlohmann/json.hpp>
@@ -28,7 +23,7 @@ using nlohmann::json;
 
 Relay::Relay(unsigned short port)
     : acceptor_(io_, {asio::ip::address_v4::loopback(), port}), port_(acceptor_.local_endpoint().port()) {
-  asio::co_spawn(io_, listen(), asio::detached);
+  listen();
   thread_ = std::jthread([this] { io_.run(); });
 }
 
@@ -37,20 +32,20 @@ Relay::~Relay() {
   thread_.join();
 }
 
-asio::awaitable<void> Relay::listen() {
-  while (true) {
-    tcp::socket tcp = co_await acceptor_.async_accept(asio::use_awaitable);
-    asio::co_spawn(io_, serve(std::move(tcp)), asio::detached);
-  }
+void Relay::listen() {
+  acceptor_.async_accept([this](boost::system::error_code error, tcp::socket tcp) {
+    if (!error) greet(std::move(tcp));
+    listen();
+  });
 }
 
-asio::awaitable<void> Relay::serve(tcp::socket tcp) {
-  beast::tcp_stream stream(std::move(tcp));
+// In one go, as whoever connects here speaks at once and reads. (It also spares the compiler a great deal.)
+void Relay::greet(tcp::socket tcp) {
   beast::flat_buffer buffer;
   http::request<http::string_body> request;
   boost::system::error_code error;
-  co_await http::async_read(stream, buffer, request, asio::redirect_error(asio::use_awaitable, error));
-  if (error) co_return;
+  http::read(tcp, buffer, request, error);
+  if (error) return;
   ++upgrades;
   const bool stranger = request[http::field::authorization] != std::string("Bearer ") + token;
   if (stranger || request.target() != "/server" || conflicts > 0) {
@@ -60,36 +55,46 @@ asio::awaitable<void> Relay::serve(tcp::socket tcp) {
     response.set(http::field::content_type, "application/json");
     response.body() = stranger ? R"({"error":"wrong token"})" : R"({"error":"another server is here"})";
     response.prepare_payload();
-    co_await http::async_write(stream, response, asio::redirect_error(asio::use_awaitable, error));
-    co_return;
+    http::write(tcp, response, error);
+    return;
   }
-  auto socket = std::make_shared<Socket>(std::move(stream));
-  co_await socket->async_accept(request, asio::redirect_error(asio::use_awaitable, error));
-  if (error) co_return;
+  auto socket = std::make_shared<Socket>(std::move(tcp));
+  socket->accept(request, error);
+  if (error) return;
   {
     const std::lock_guard lock(mutex_);
     scene_ = std::string(request["Lichtveld-Scene"]);
   }
-  socket_ = socket;
+  socket_ = std::move(socket);
   queue_.clear();
+  buffer_.clear();
   connected_ = true;
   send_raw(R"({"type":"welcome","id":"server"})");
-  buffer.clear();
-  while (!error) {
-    co_await socket->async_read(buffer, asio::redirect_error(asio::use_awaitable, error));
-    if (error) break;
-    const json message = json::parse(beast::buffers_to_string(buffer.data()));
-    buffer.consume(buffer.size());
-    Handler handler;
-    {
-      const std::lock_guard lock(mutex_);
-      const auto client = clients_.find(message.at("id").get<int>());
-      if (client != clients_.end()) handler = client->second;
+  read_next();
+}
+
+void Relay::read_next() {
+  socket_->async_read(buffer_, [this, socket = socket_](boost::system::error_code error, std::size_t) {
+    if (socket != socket_) return;
+    if (error) {
+      connected_ = false;
+      socket_.reset();
+      return;
     }
-    if (handler) handler(message);
+    deliver(json::parse(beast::buffers_to_string(buffer_.data())));
+    buffer_.clear();
+    read_next();
+  });
+}
+
+void Relay::deliver(const json& message) {
+  Handler handler;
+  {
+    const std::lock_guard lock(mutex_);
+    const auto client = clients_.find(message.at("id").get<int>());
+    if (client != clients_.end()) handler = client->second;
   }
-  connected_ = false;
-  socket_.reset();
+  if (handler) handler(message);
 }
 
 int Relay::attach(Handler handler) {

@@ -2,13 +2,10 @@
 // WebRTC library, and a UDP link that can be cut. Everything is bound to 127.0.0.1.
 #pragma once
 
-#include <utility>  // before Boost 1.74's awaitable.hpp, which needs it
-
 #include <atomic>
-#include <boost/asio/awaitable.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
-#include <boost/beast/core/tcp_stream.hpp>
+#include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/websocket/stream.hpp>
 #include <deque>
 #include <functional>
@@ -50,15 +47,18 @@ class Relay {
   static constexpr auto token = "the-right-token";
 
  private:
-  using Socket = boost::beast::websocket::stream<boost::beast::tcp_stream>;
-  boost::asio::awaitable<void> listen();
-  boost::asio::awaitable<void> serve(boost::asio::ip::tcp::socket tcp);
+  using Socket = boost::beast::websocket::stream<boost::asio::ip::tcp::socket>;
+  void listen();
+  void greet(boost::asio::ip::tcp::socket tcp);
+  void read_next();
+  void deliver(const nlohmann::json& message);
   void write_next();
 
   boost::asio::io_context io_;
   boost::asio::ip::tcp::acceptor acceptor_;
   unsigned short port_;
   std::shared_ptr<Socket> socket_;
+  boost::beast::flat_buffer buffer_;
   std::deque<std::string> queue_;
   std::atomic<bool> connected_ = false;
   mutable std::mutex mutex_;  // guards what follows

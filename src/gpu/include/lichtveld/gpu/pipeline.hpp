@@ -14,6 +14,8 @@ using Spirv = std::span<const std::uint32_t>;
 
 enum class Kind { sampled_image, storage_image, storage_buffer };
 
+vk::DescriptorType descriptor_type(Kind kind);
+
 // What every pipeline is made of besides its shaders. Specialisation constant i has the id i.
 struct Interface {
   std::vector<Kind> kinds = {};  // binding i has kinds[i]
