@@ -16,6 +16,10 @@ using Triangle = std::array<std::uint32_t, 3>;  // elements of the primitive's a
 // A triangle whose height is less than this share of its longest edge has no normal worth the name: a 32-bit
 // coordinate as long as the edge is rounded by as much.
 constexpr double kFlat = 1e-7;
+
+// How far an exporter's rounding may push a TEXCOORD_1 out of the unit square; it is pulled back.
+constexpr float kAtlasRounding = 1e-5f;
+
 // Farther out, 32-bit positions are coarser than 6 cm; such scenes have their unit wrong.
 constexpr double kMaxCoordinate = 1e6;
 
@@ -85,13 +89,13 @@ glm::vec3 world_position(const Accessor& positions, std::uint32_t i, const glm::
 }
 
 glm::vec2 atlas_coordinate(const Accessor& atlas, std::uint32_t i, const std::string& what) {
-  const glm::vec2 uv = atlas.vec2(i);
-  if (!(uv.x >= 0 && uv.x <= 1 && uv.y >= 0 && uv.y <= 1)) {
+  const glm::vec2 uv = atlas.vec2(i), inside = glm::clamp(uv, 0.0f, 1.0f);
+  if (!(glm::distance(uv, inside) <= kAtlasRounding)) {
     throw SceneError(what + ": TEXCOORD_1 of vertex " + std::to_string(i) + " is (" + std::to_string(uv.x) +
                      ", " + std::to_string(uv.y) +
                      "), outside 0..1: pack the light-map charts into the unit square");
   }
-  return uv;
+  return inside;
 }
 
 // The normals of a primitive, or nothing where faces have to stand in for them.

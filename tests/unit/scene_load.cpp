@@ -44,6 +44,15 @@ TEST(SceneLoad, ReadsQuadMaterialAndEmission) {
   expect_near(scene.bodies[0].box.min, {-1, 0, -1});
 }
 
+TEST(SceneLoad, RoundingBeyondTheUnitSquareIsPulledBack) {
+  SceneBuilder builder;
+  builder.quad("floor", kFloor, {-5e-6f, 0, 1.000005f, 1}, builder.material(glm::vec3(1)));
+  for (const Vertex& vertex : load_built(builder).vertices) {
+    EXPECT_GE(vertex.atlas.x, 0);
+    EXPECT_LE(vertex.atlas.x, 1);
+  }
+}
+
 TEST(SceneLoad, MissingNormalsBecomeFlatAndUnshared) {
   SceneBuilder builder;
   const std::array<glm::vec3, 4> folded = {glm::vec3{-1, 0, 1}, {1, 0, 1}, {1, 1, -1}, {-1, 0, -1}};
