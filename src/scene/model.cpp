@@ -68,6 +68,30 @@ bool keep_encoded(tinygltf::Image* image, int, std::string*, std::string*, int, 
   return true;
 }
 
+bool write_nothing(std::string* error, const std::string&, const std::vector<unsigned char>&, void*) {
+  *error += "scenes are only read";
+  return false;
+}
+
+// tinygltf since 2.9 also asks for a file's size before it reads it, and wants all of its callbacks or none.
+template <typename Callbacks>
+Callbacks callbacks_beside(Folder& folder) {
+  Callbacks callbacks{};
+  callbacks.FileExists = &lies_beside;
+  callbacks.ExpandFilePath = [](const std::string& name, void*) { return name; };
+  callbacks.ReadWholeFile = &read_beside;
+  callbacks.WriteWholeFile = &write_nothing;
+  callbacks.user_data = &folder;
+  if constexpr (requires { callbacks.GetFileSizeInBytes; })
+    callbacks.GetFileSizeInBytes = [](std::size_t* bytes, std::string* error, const std::string& name, void*) {
+      std::error_code failed;
+      *bytes = fs::file_size(name, failed);
+      if (failed) *error += failed.message();
+      return !failed;
+    };
+  return callbacks;
+}
+
 }  // namespace
 
 tinygltf::Model read_model(const fs::path& file) {
@@ -76,8 +100,7 @@ tinygltf::Model read_model(const fs::path& file) {
 
   Folder folder{file.has_parent_path() ? file.parent_path() : fs::path(".")};
   tinygltf::TinyGLTF reader;
-  reader.SetFsCallbacks(
-      {&lies_beside, [](const std::string& name, void*) { return name; }, &read_beside, nullptr, &folder});
+  reader.SetFsCallbacks(callbacks_beside<tinygltf::FsCallbacks>(folder));
   reader.SetImageLoader(&keep_encoded, nullptr);
   tinygltf::Model model;
   std::string error, warning;

@@ -11,8 +11,8 @@ namespace {
 
 std::vector<glm::vec4> bake(const TempFolder& folder, int size, int psf) {
   const auto file = (folder.path() / "E.exr").string();
-  const auto ran = run("bake " + cornell + " --bounces 2 --abuffer list --sort scan --size " + std::to_string(size) +
-                           " --psf " + std::to_string(psf) + " --out " + file,
+  const auto ran = run("bake " + cornell + " --bounces 2 --abuffer list --sort scan --size " +
+                           std::to_string(size) + " --psf " + std::to_string(psf) + " --out " + file,
                        "", 300);
   EXPECT_EQ(ran.status, 0) << ran.output;
   std::vector<glm::vec4> values(static_cast<std::size_t>(size) * size);

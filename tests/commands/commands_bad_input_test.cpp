@@ -18,6 +18,10 @@ struct BadUse {
   std::vector<std::string> says;
 };
 
+void PrintTo(const BadUse& use, std::ostream* out) {
+  *out << use.arguments;
+}
+
 class BadUsage : public ::testing::TestWithParam<BadUse> {};
 
 TEST_P(BadUsage, IsNamed) {
@@ -41,7 +45,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadUse{"UnknownOption", bake + "--colour red", 2, {"--colour"}},
         BadUse{"NoOut", "bake " + cornell, 2, {"--out"}},
         BadUse{"NoScene", "bake nowhere.glb --out OUT", 2, {"nowhere.glb"}},
-        BadUse{"ScenIsAFolder", "bake /tmp --out OUT", 2, {"/tmp"}},
+        BadUse{"SceneIsAFolder", "bake /tmp --out OUT", 2, {"/tmp"}},
         BadUse{"Links", bake + "--method links", 2, {"links", "thesis"}},
         BadUse{"Reference", bake + "--method reference", 2, {"reference", "thesis"}},
         BadUse{"UnknownMethod", bake + "--method magic", 2, {"magic", "thesis"}},

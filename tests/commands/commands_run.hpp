@@ -18,7 +18,8 @@ struct Ran {
 // `environment` is put before the command, as in a shell: "NAME=value ".
 // It is ended after so many seconds.
 inline Ran run(const std::string& arguments, const std::string& environment = "", int seconds = 60) {
-  const std::string command = environment + " timeout " + std::to_string(seconds) + " " LICHTVELD_BINARY " " + arguments + " 2>&1";
+  const std::string command =
+      environment + " timeout " + std::to_string(seconds) + " " LICHTVELD_BINARY " " + arguments + " 2>&1";
   FILE* pipe = popen(command.c_str(), "r");
   if (pipe == nullptr) throw std::runtime_error("cannot run " + command);
   Ran ran;
