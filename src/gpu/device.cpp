@@ -189,14 +189,19 @@ void MemoryLedger::remove(const std::string& name, std::uint64_t bytes) {
 Device::Device(const DeviceOptions& options) {
   try {
     instance_ = make_instance(context_, options.validation);
-    if (options.validation)
-      messenger_ = vk::raii::DebugUtilsMessengerEXT(
-          instance_, {.messageSeverity = vk::DebugUtilsMessageSeverityFlagBitsEXT::eWarning |
-                                         vk::DebugUtilsMessageSeverityFlagBitsEXT::eError,
-                      .messageType = vk::DebugUtilsMessageTypeFlagBitsEXT::eValidation |
-                                     vk::DebugUtilsMessageTypeFlagBitsEXT::ePerformance,
-                      .pfnUserCallback = &Device::on_message,
-                      .pUserData = messages_.get()});
+    if (options.validation) {
+      vk::DebugUtilsMessengerCreateInfoEXT info{
+          .messageSeverity = vk::DebugUtilsMessageSeverityFlagBitsEXT::eWarning |
+                             vk::DebugUtilsMessageSeverityFlagBitsEXT::eError,
+          .messageType = vk::DebugUtilsMessageTypeFlagBitsEXT::eValidation |
+                         vk::DebugUtilsMessageTypeFlagBitsEXT::ePerformance,
+          .pUserData = messages_.get()};
+      // Newer headers spell the callback's type with their own enumerations; the call is the same. By way of
+      // void (*)(), which GCC takes as meant.
+      info.pfnUserCallback =
+          reinterpret_cast<decltype(info.pfnUserCallback)>(reinterpret_cast<void (*)()>(&Device::on_message));
+      messenger_ = vk::raii::DebugUtilsMessengerEXT(instance_, info);
+    }
     physical_ = choose(instance_, options.device);
     const auto family = graphics_family(physical_);
     device_ = make_device(physical_, family);
