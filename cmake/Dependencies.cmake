@@ -8,6 +8,10 @@ find_package(glm REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(CLI11 REQUIRED)
 find_package(spdlog REQUIRED)
+find_package(embree 4 QUIET)
+if(NOT embree_FOUND)
+  find_package(embree 3 REQUIRED)
+endif()
 # Its package file does not ask for OpenSSL and Threads itself; both stand above.
 find_package(LibDataChannel REQUIRED)
 # OpenImageIO's own package file wants tools that Debian leaves out of it.

@@ -1,36 +1,19 @@
 // lichtveld bake: a scene's irradiance into a file.
+#include "bake.hpp"
+
 #include <spdlog/spdlog.h>
 
-#include <chrono>
 #include <cmath>
 
 #include "command_list.hpp"
 #include "files.hpp"
-#include "lichtveld/gpu/transfer.hpp"
-#include "lichtveld/lightfield/thesis.hpp"
 #include "lichtveld/stream/encoder.hpp"
-#include "options.hpp"
-#include "report.hpp"
 
 namespace lichtveld::commands {
 
 namespace {
 
-struct BakeOptions {
-  std::string scene, out, png, report, dump;
-  std::uint32_t dump_psf = 0;
-  std::vector<std::string> moves;
-  bool live = false;
-  gpu::DeviceOptions device;
-  lightfield::Settings settings;
-};
-
-struct NodeMove {
-  std::uint32_t body;
-  glm::vec3 by;  // [m]
-};
-
-NodeMove parse_move(const std::string& text, const scene::Scene& scene) {
+BakeJob::NodeMove parse_move(const std::string& text, const scene::Scene& scene) {
   const auto equals = text.rfind('=');
   const auto wrong = [&] {
     return UsageError("--move " + text + ": write NODE=dx,dy,dz in metres, as in --move cube1=0.5,0,0");
@@ -38,7 +21,7 @@ NodeMove parse_move(const std::string& text, const scene::Scene& scene) {
   if (equals == std::string::npos) throw wrong();
   const auto parts = CLI::detail::split(text.substr(equals + 1), ',');
   if (parts.size() != 3) throw wrong();
-  NodeMove move{scene::find_body(scene, text.substr(0, equals)), {}};
+  BakeJob::NodeMove move{scene::find_body(scene, text.substr(0, equals)), {}};
   for (int axis = 0; axis < 3; ++axis)
     if (!CLI::detail::lexical_cast(parts[axis], move.by[axis]) || !std::isfinite(move.by[axis])) throw wrong();
   return move;
@@ -46,45 +29,30 @@ NodeMove parse_move(const std::string& text, const scene::Scene& scene) {
 
 void bake(const BakeOptions& options) {
   lightfield::check(options.settings);
-  const auto scene = scene::load(options.scene);
-  scene::check_atlas(scene, options.settings.size);
-  std::vector<NodeMove> moves;
-  for (const auto& text : options.moves) moves.push_back(parse_move(text, scene));
+  for (const auto& file : {options.out, options.png, options.report})
+    if (!file.empty()) check_place(file);
+  BakeJob job{.scene = scene::load(options.scene), .moves = {}};
+  scene::check_atlas(job.scene, options.settings.size);
+  for (const auto& text : options.moves) job.moves.push_back(parse_move(text, job.scene));
 
-  const gpu::Device device(options.device);
-  lightfield::StageObserver observer;
-  if (!options.dump.empty()) {
-    std::filesystem::create_directories(options.dump);
-    observer = [&](const std::string& stage, const gpu::Image& image) {
-      write_exr(std::filesystem::path(options.dump) / (stage + ".exr"), gpu::download<glm::vec4>(device, image),
-                image.shape().width);
-    };
-  }
-
-  const auto start = std::chrono::steady_clock::now();
-  lightfield::Thesis method(device, scene, options.settings);
-  std::vector<glm::vec3> offsets(scene.bodies.size(), glm::vec3(0));
-  if (options.live) method.solve(offsets);
-  for (const auto& move : moves) {
-    offsets[move.body] += move.by;
-    if (options.live && &move != &moves.back()) method.solve(offsets);
-  }
-  const auto solution = method.solve(offsets, observer, options.dump_psf);
-  const auto irradiance = method.irradiance();
-  const std::chrono::duration<double, std::milli> total = std::chrono::steady_clock::now() - start;
-
-  check_validation(device);
-  write_exr(options.out, irradiance, options.settings.size);
+  const Baked baked =
+      options.method == Method::reference ? bake_reference(options, job) : bake_thesis(options, job);
+  write_exr(options.out, baked.irradiance, options.settings.size);
   if (!options.png.empty())
-    write_bytes(options.png, stream::encode_png(method.presented(), options.settings.size));
-  if (!options.report.empty())
-    write_text(options.report,
-               report(device, options.settings, solution, method.times(), total.count()).dump(2) + "\n");
-  spdlog::info("{}: {} texels, {} bounces, {:.0f} ms on {}", options.out, solution.texels_valid,
-               solution.bounces, total.count(), device.summary().name);
+    write_bytes(options.png, stream::encode_png(baked.presented, options.settings.size));
+  if (!options.report.empty()) write_text(options.report, baked.report.dump(2) + "\n");
+  spdlog::info("{}: {} texels, {} bounces, {:.0f} ms on {}", options.out, baked.report["texels_valid"].dump(),
+               baked.report["bounces_used"].dump(), baked.report["time_ms"]["total"].get<double>(),
+               baked.report["device"].get<std::string>());
 }
 
 }  // namespace
+
+std::vector<glm::vec3> BakeJob::moved() const {
+  auto offsets = at_rest();
+  for (const auto& move : moves) offsets[move.body] += move.by;
+  return offsets;
+}
 
 void add_bake(CLI::App& application) {
   auto* command = application.add_subcommand("bake", "Compute a scene's irradiance into a file");
@@ -109,7 +77,12 @@ void add_bake(CLI::App& application) {
       ->capture_default_str();
   add_quality_options(*command, options->settings);
   add_bounces_option(*command, options->settings);
-  add_method_options(*command, options->settings);
+  add_method_option(*command, options->method, {Method::thesis, Method::reference});
+  add_light_field_options(*command, options->settings);
+  command->add_option("--spp", options->spp, "Paths a texel of --method reference, 1..1000000")
+      ->capture_default_str();
+  command->add_option("--seed", options->seed, "Of --method reference: the same seed gives the same picture")
+      ->capture_default_str();
   add_device_options(*command, options->device);
   command->callback([options] { bake(*options); });
 }

@@ -20,7 +20,7 @@ using lightfield::Sort;
 
 struct BenchOptions {
   std::vector<std::string> scenes;
-  std::string out = "bench";
+  std::string out = "build/bench";
   std::vector<std::uint32_t> sizes = {128, 256}, psfs = {96, 384};
   std::uint32_t bounces = 2, repeats = 3;
   gpu::DeviceOptions device;

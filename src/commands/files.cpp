@@ -11,13 +11,17 @@ namespace lichtveld::commands {
 
 namespace fs = std::filesystem;
 
-void write_whole(const fs::path& file, const std::function<void(const fs::path&)>& write) {
+void check_place(const fs::path& file) {
   const auto folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
   if (!fs::is_directory(folder))
     throw UsageError(file.string() + " cannot be written: " + folder.string() +
                      " is not a folder; make it first");
   if (fs::is_directory(file))
     throw UsageError(file.string() + " cannot be written: it is a folder; name a file in it");
+}
+
+void write_whole(const fs::path& file, const std::function<void(const fs::path&)>& write) {
+  check_place(file);
   fs::path temporary = file;
   temporary.replace_filename("." + file.stem().string() + "." + std::to_string(getpid()) +
                              file.extension().string());

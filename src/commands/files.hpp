@@ -10,6 +10,10 @@
 
 namespace lichtveld::commands {
 
+// Throws UsageError if there is no folder for such a file, or a folder in its place: worth asking before long
+// work.
+void check_place(const std::filesystem::path& file);
+
 // Calls write(temporary), then renames the temporary file to `file`; removes it if either fails. The temporary
 // keeps the extension. Throws UsageError if the folder is not there or cannot be written to.
 void write_whole(const std::filesystem::path& file,

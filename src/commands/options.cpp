@@ -12,6 +12,7 @@ using lightfield::ABuffer;
 using lightfield::Sort;
 
 const std::map<std::string, ABuffer> abuffers = {{"stencil", ABuffer::stencil}, {"list", ABuffer::list}};
+const std::map<std::string, Method> methods = {{"thesis", Method::thesis}, {"reference", Method::reference}};
 const std::map<std::string, Sort> sorts = {
     {"bitonic", Sort::bitonic}, {"compare-swap", Sort::compare_swap}, {"scan", Sort::scan}};
 
@@ -31,7 +32,7 @@ void add_choice(CLI::App& command, const std::string& option, Value& value,
   command
       .add_option_function<std::string>(
           option,
-          [&value, &names, option, choices](const std::string& text) {
+          [&value, names, option, choices](const std::string& text) {
             const auto found = names.find(text);
             if (found == names.end()) throw UsageError(option + " " + text + ": choose one of " + choices);
             value = found->second;
@@ -63,18 +64,18 @@ void check_validation(const gpu::Device& device) {
                              " complaints (above): a bug, please report it with this command line");
 }
 
-void add_method_options(CLI::App& command, lightfield::Settings& settings) {
-  command
-      .add_option_function<std::string>(
-          "--method",
-          [](const std::string& method) {
-            if (method == "links" || method == "reference")
-              throw UsageError("--method " + method + " is not built yet; there is thesis");
-            if (method != "thesis") throw UsageError("--method " + method + ": there is thesis");
-          },
-          "How the light is computed: thesis renders every PSF afresh in every bounce")
-      ->type_name("thesis")
-      ->default_str("thesis");
+void add_method_option(CLI::App& command, Method& method, const std::vector<Method>& choices) {
+  std::map<std::string, Method> names;
+  for (const Method choice : choices) names[name_of(choice)] = choice;
+  std::string help;
+  for (const auto& [name, choice] : names)
+    help += (help.empty() ? "" : "; ") + name +
+            (choice == Method::thesis ? ": every PSF rendered afresh in every bounce"
+                                      : ": path tracing on the CPU, the truth to compare with");
+  add_choice(command, "--method", method, names, help);
+}
+
+void add_light_field_options(CLI::App& command, lightfield::Settings& settings) {
   add_choice(command, "--abuffer", settings.abuffer, abuffers,
              "How a PSF keeps all its layers: routed by the stencil to the samples of a pixel, or in a list of "
              "each pixel");
@@ -114,6 +115,9 @@ void add_bounces_option(CLI::App& command, lightfield::Settings& settings) {
 
 std::string name_of(ABuffer abuffer) {
   return key_of(abuffers, abuffer);
+}
+std::string name_of(Method method) {
+  return key_of(methods, method);
 }
 std::string name_of(Sort sort) {
   return key_of(sorts, sort);

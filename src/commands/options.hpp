@@ -23,9 +23,13 @@ void add_device_options(CLI::App& command, gpu::DeviceOptions& options);
 // Throws std::runtime_error if the validation layers complained: a programmer's error must not pass unseen.
 void check_validation(const gpu::Device& device);
 
-// --method, --abuffer, --sort, --layers: how to compute, whatever the quality. --method is checked against what
-// there is.
-void add_method_options(CLI::App& command, lightfield::Settings& settings);
+enum class Method { thesis, reference };
+
+// --method: one of these; others are refused by name.
+void add_method_option(CLI::App& command, Method& method, const std::vector<Method>& choices);
+
+// --abuffer, --sort, --layers: how a light field is computed, whatever its quality.
+void add_light_field_options(CLI::App& command, lightfield::Settings& settings);
 
 // --size, --psf.
 void add_quality_options(CLI::App& command, lightfield::Settings& settings);
@@ -36,5 +40,6 @@ void add_bounces_option(CLI::App& command, lightfield::Settings& settings);
 // The last part of a name, for options whose values are words: "compare-swap".
 std::string name_of(lightfield::ABuffer abuffer);
 std::string name_of(lightfield::Sort sort);
+std::string name_of(Method method);
 
 }  // namespace lichtveld::commands

@@ -17,7 +17,7 @@ nlohmann::ordered_json report(const gpu::Device& device, const lightfield::Setti
   memory["total"] = total_bytes;
   return {{"device", device.summary().name},
           {"driver", device.summary().driver},
-          {"method", "thesis"},
+          {"method", name_of(Method::thesis)},
           {"abuffer", name_of(settings.abuffer)},
           {"sort", name_of(settings.sort)},
           {"size", settings.size},

@@ -29,6 +29,7 @@ constexpr std::size_t cubes_of_players = 2;
 struct ServeOptions {
   std::string scene, signaling, token_file, bind;
   double rate = 30;
+  Method method = Method::thesis;
   bool chosen_quality = false;
   gpu::DeviceOptions device;
   lightfield::Settings settings{
@@ -143,7 +144,8 @@ void add_serve(CLI::App& application) {
   command->get_option("--size")->default_str("the finest that this machine renews twice a second");
   command->get_option("--psf")->default_str("likewise");
   add_bounces_option(*command, options->settings);
-  add_method_options(*command, options->settings);
+  add_method_option(*command, options->method, {Method::thesis});
+  add_light_field_options(*command, options->settings);
   add_device_options(*command, options->device);
   command->callback([options, command] {
     options->chosen_quality = command->count("--size") + command->count("--psf") > 0;

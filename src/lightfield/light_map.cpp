@@ -48,6 +48,11 @@ LightMap::LightMap(const gpu::Device& device, std::uint32_t size)
       radiance(atlas_image(device, "radiance", size, rgba32f, Usage::eSampled)),
       presented(atlas_image(device, "presented", size, vk::Format::eR8G8B8A8Unorm, {})) {}
 
+std::vector<std::uint8_t> download_presented(const gpu::Device& device, const LightMap& map) {
+  const auto pixels = gpu::download<std::array<std::uint8_t, 4>>(device, map.presented);
+  return {pixels.front().data(), pixels.front().data() + 4 * pixels.size()};
+}
+
 Geometry::Geometry(const gpu::Device& device, const scene::Scene& scene)
     : scene(scene),
       vertices(gpu::upload<scene::Vertex>(device, "scene/vertices", scene.vertices,

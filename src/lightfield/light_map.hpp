@@ -27,6 +27,9 @@ struct LightMap {
   gpu::Image presented;          // sRGB RGBA8: tone-mapped L
 };
 
+// The presented map's bytes, RGBA.
+std::vector<std::uint8_t> download_presented(const gpu::Device& device, const LightMap& map);
+
 // The scene's triangles and textures on the device, and where its bodies are.
 struct Geometry {
   Geometry(const gpu::Device& device, const scene::Scene& scene);

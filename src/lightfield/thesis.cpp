@@ -3,7 +3,6 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
-#include <array>
 #include <bit>
 
 #include "blend.hpp"
@@ -129,8 +128,7 @@ std::vector<glm::vec4> Thesis::irradiance() {
 }
 
 std::vector<std::uint8_t> Thesis::presented() {
-  const auto pixels = gpu::download<std::array<std::uint8_t, 4>>(parts_->device, parts_->map.presented);
-  return {pixels.front().data(), pixels.front().data() + 4 * pixels.size()};
+  return download_presented(parts_->device, parts_->map);
 }
 
 const gpu::PassTimes& Thesis::times() const {

@@ -47,7 +47,12 @@ INSTANTIATE_TEST_SUITE_P(
         BadUse{"NoScene", "bake nowhere.glb --out OUT", 2, {"nowhere.glb"}},
         BadUse{"SceneIsAFolder", "bake /tmp --out OUT", 2, {"/tmp"}},
         BadUse{"Links", bake + "--method links", 2, {"links", "thesis"}},
-        BadUse{"Reference", bake + "--method reference", 2, {"reference", "thesis"}},
+        BadUse{"ServeReference",
+               "serve --method reference --scene " + cornell +
+                   " --signaling ws://127.0.0.1:1/server --token-file nowhere",
+               2,
+               {"reference", "thesis"}},
+        BadUse{"Spp", bake + "--method reference --spp 0", 2, {"0", "1..1000000"}},
         BadUse{"UnknownMethod", bake + "--method magic", 2, {"magic", "thesis"}},
         BadUse{"UnknownABuffer", bake + "--abuffer magic", 2, {"magic", "list|stencil"}},
         BadUse{"UnknownSort", bake + "--sort magic", 2, {"magic", "bitonic|compare-swap|scan"}},

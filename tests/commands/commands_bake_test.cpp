@@ -1,5 +1,6 @@
 // lichtveld bake and info: their files and what they report.
 #include <OpenImageIO/imagebuf.h>
+#include <OpenImageIO/imagebufalgo.h>
 #include <OpenImageIO/imageio.h>
 #include <gmock/gmock.h>
 
@@ -20,8 +21,8 @@ class Bake : public ::testing::Test {
 
   // Bakes the Cornell room small and returns all values of E.exr.
   std::vector<float> bake(const std::string& name, const std::string& options = "") {
-    const auto ran = run("bake " + cornell + " --validation --size 64 --psf 24 --bounces 2 --out " +
-                         path(name) + " " + options);
+    const auto ran = run("bake " + cornell + " --validation --size 64 --bounces 2 --out " + path(name) + " " +
+                         (options.find("--psf") == std::string::npos ? "--psf 24 " : "") + options);
     EXPECT_EQ(ran.status, 0) << ran.output;
     OIIO::ImageBuf image(path(name));
     std::vector<float> values(64 * 64 * 4);
@@ -84,6 +85,31 @@ TEST_F(Bake, LiveMovesEndWhereAFreshBakeDoes) {
   EXPECT_EQ(fresh, live);
   EXPECT_NE(fresh, rest);
   EXPECT_EQ(fresh, bake("sum.exr", "--move cube1=-0.3,0.3,0 --move cube2=0.2,0,0.1"));
+}
+
+// The light field against path tracing: a wrong side, weight or bounce would show here as bias.
+TEST_F(Bake, AgreesWithTheReference) {
+  const auto traced = bake("reference.exr", "--method reference --spp 1024 --png " + path("reference.png") +
+                                                " --report " + path("r.json"));
+  const auto field = bake("field.exr", "--psf 1536 --abuffer list --png " + path("field.png"));
+  double difference = 0, sum = 0;
+  for (std::size_t i = 0; i < traced.size(); ++i) {
+    if (i % 4 == 3) {
+      ASSERT_EQ(traced[i], field[i]) << "the same texels are valid";
+    } else {
+      difference += field[i] - traced[i];
+      sum += traced[i];
+    }
+  }
+  std::printf("light field against reference: bias %.3f %%\n", 100 * difference / sum);
+  EXPECT_LT(std::abs(difference / sum), 0.01);
+  const auto report = json::parse(std::ifstream(path("r.json")));
+  EXPECT_EQ(report["method"], "reference");
+  EXPECT_GT(report["standard_error"], 0);
+  EXPECT_LT(report["standard_error"], 0.05);
+  const auto shown = OIIO::ImageBufAlgo::compare(OIIO::ImageBuf(path("reference.png")),
+                                                 OIIO::ImageBuf(path("field.png")), 1, 1);
+  EXPECT_LT(shown.meanerror, 0.02) << "both are presented alike";
 }
 
 TEST_F(Bake, DumpsEveryPass) {

@@ -28,6 +28,10 @@ struct Golden {
   double tolerance;
 };
 
+void PrintTo(const Golden& golden, std::ostream* out) {
+  *out << golden.bake << "/" << golden.file;
+}
+
 std::vector<Golden> goldens() {
   std::vector<Golden> all;
   const json list = read_list();

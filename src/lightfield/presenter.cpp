@@ -1,0 +1,32 @@
+#include "lichtveld/lightfield/presenter.hpp"
+
+#include <array>
+
+#include "brdf.hpp"
+#include "geometry_texture.hpp"
+#include "tone_map.hpp"
+
+namespace lichtveld::lightfield {
+
+std::vector<std::uint8_t> present(const gpu::Device& device, const scene::Scene& scene, std::uint32_t size,
+                                  const std::vector<glm::vec3>& offsets,
+                                  std::span<const glm::vec4> irradiance) {
+  Geometry geometry(device, scene);
+  const LightMap map(device, size);
+  const GeometryTexture geometry_texture(device);
+  const Brdf brdf(device);
+  const ToneMap tone_map(device);
+  const gpu::Buffer given =
+      gpu::upload(device, "lightfield/given_irradiance", irradiance, vk::BufferUsageFlagBits::eTransferSrc);
+  geometry.place(offsets);
+  gpu::PassTimes times;
+  gpu::Frame frame(device, times);
+  geometry_texture.record(frame, geometry, map);
+  frame.copy("present", given, map.total_irradiance);
+  brdf.record(frame, map);
+  tone_map.record(frame, map);
+  frame.submit_and_wait();
+  return download_presented(device, map);
+}
+
+}  // namespace lichtveld::lightfield

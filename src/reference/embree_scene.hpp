@@ -1,0 +1,33 @@
+// Finds what a ray hits, with Embree.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "embree.hpp"
+#include "geometry.hpp"
+
+namespace lichtveld::reference {
+
+class EmbreeScene {
+ public:
+  // The geometry must outlive it. Throws std::runtime_error if there is not enough memory.
+  explicit EmbreeScene(const Geometry& geometry);
+
+  // The nearest surface from there along a unit direction on the receiver's side of its face. One-sided
+  // surfaces are there from their front alone, and a receiver never sees its own triangle. What coincides with
+  // the receiver is in front of it.
+  std::optional<Hit> nearest(const Receiver& from, const glm::vec3& direction) const;
+
+ private:
+  struct Release {
+    void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
+    void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
+    void operator()(RTCGeometry geometry) const { rtcReleaseGeometry(geometry); }
+  };
+  const Geometry& geometry_;
+  std::unique_ptr<RTCDeviceTy, Release> device_;
+  std::unique_ptr<RTCSceneTy, Release> scene_;
+};
+
+}  // namespace lichtveld::reference
