@@ -24,8 +24,9 @@ const shownPsf = 188;
 const largest = 300_000;
 const gap = 12;
 
+// Without a note of the command line, which would hold this machine's paths.
 const oiiotool = (...args) =>
-  execFileSync('oiiotool', args.map(String), { stdio: ['ignore', 'inherit', 'inherit'] });
+  execFileSync('oiiotool', ['--nosoftwareattrib', ...args.map(String)], { stdio: ['ignore', 'inherit', 'inherit'] });
 const twice = ['--resize:filter=box', '200%', '-d', 'uint8'];
 const grey = ['--ch', '0,0,0', '--chnames', 'R,G,B'];
 /** Linear light to the screen's 8 bits; `exposure` maps it to 0..1. */

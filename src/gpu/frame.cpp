@@ -1,6 +1,6 @@
 #include "lichtveld/gpu/frame.hpp"
 
-#include <cassert>
+#include "bindings.hpp"
 
 namespace lichtveld::gpu {
 
@@ -11,33 +11,6 @@ using AccessBit = vk::AccessFlagBits2;
 
 constexpr std::uint32_t queries_a_pool = 1024;
 
-// Writes the bindings into command buffer state, in the order of the pipeline's kinds.
-void push_descriptors(const vk::raii::CommandBuffer& commands, const Pipeline& pipeline,
-                      const std::vector<Binding>& bindings) {
-  assert(bindings.size() == pipeline.kinds().size());
-  std::vector<vk::DescriptorImageInfo> images(bindings.size());
-  std::vector<vk::DescriptorBufferInfo> buffers(bindings.size());
-  std::vector<vk::WriteDescriptorSet> writes;
-  for (std::uint32_t index = 0; index < bindings.size(); ++index) {
-    const Binding& binding = bindings[index];
-    assert(binding.kind == pipeline.kinds()[index]);
-    if (binding.image != nullptr)
-      images[index] = vk::DescriptorImageInfo{.sampler = binding.sampler,
-                                              .imageView = binding.image->view(),
-                                              .imageLayout = binding.kind == Kind::sampled_image
-                                                                 ? vk::ImageLayout::eShaderReadOnlyOptimal
-                                                                 : vk::ImageLayout::eGeneral};
-    else
-      buffers[index] = vk::DescriptorBufferInfo{.buffer = binding.buffer->handle(), .range = VK_WHOLE_SIZE};
-    writes.push_back({.dstBinding = index,
-                      .descriptorCount = 1,
-                      .descriptorType = descriptor_type(binding.kind),
-                      .pImageInfo = &images[index],
-                      .pBufferInfo = &buffers[index]});
-  }
-  if (!writes.empty()) commands.pushDescriptorSetKHR(pipeline.bind_point(), pipeline.layout(), 0, writes);
-}
-
 vk::RenderingAttachmentInfo attachment_info(const Attachment& attachment, vk::ImageLayout layout) {
   return {.imageView = attachment.image->layer_view(attachment.layer),
           .imageLayout = layout,
@@ -46,81 +19,7 @@ vk::RenderingAttachmentInfo attachment_info(const Attachment& attachment, vk::Im
           .clearValue = attachment.clear.value_or(vk::ClearValue{})};
 }
 
-// The stages and accesses that have to be waited for before `next`, or nothing where no barrier is needed.
-struct Wait {
-  vk::PipelineStageFlags2 stages;
-  vk::AccessFlags2 access;
-  bool needed = false;
-};
-
-Wait advance(UseState& state, vk::PipelineStageFlags2 stages, vk::AccessFlags2 access, vk::ImageLayout layout,
-             bool writes) {
-  const bool transition = layout != state.layout;
-  Wait wait;
-  if (writes || transition) {
-    wait.stages = state.write_stages | state.read_stages;
-    wait.access = state.write_access;
-    wait.needed = transition || static_cast<bool>(wait.stages);
-    // A layout transition is itself a write that later readers in other stages have to wait for.
-    state = {.write_stages = stages, .write_access = writes ? access : vk::AccessFlags2{}, .layout = layout};
-    if (!writes) {
-      state.read_stages = stages;
-      state.read_access = access;
-    }
-  } else if ((state.read_stages & stages) != stages || (state.read_access & access) != access) {
-    wait.stages = state.write_stages;
-    wait.access = state.write_access;
-    wait.needed = static_cast<bool>(wait.stages);
-    state.read_stages |= stages;
-    state.read_access |= access;
-  }
-  return wait;
-}
-
 }  // namespace
-
-Binding sampled(const Image& image, const vk::raii::Sampler& sampler) {
-  return {.kind = Kind::sampled_image, .image = &image, .sampler = *sampler};
-}
-Binding reads(const Image& image) {
-  return {.kind = Kind::storage_image, .image = &image};
-}
-Binding writes(const Image& image) {
-  return {.kind = Kind::storage_image, .image = &image, .writes = true};
-}
-Binding reads(const Buffer& buffer) {
-  return {.kind = Kind::storage_buffer, .buffer = &buffer};
-}
-Binding writes(const Buffer& buffer) {
-  return {.kind = Kind::storage_buffer, .buffer = &buffer, .writes = true};
-}
-
-void Draw::bind(const GraphicsPipeline& pipeline, const std::vector<Binding>& bindings) {
-  commands_.bindPipeline(vk::PipelineBindPoint::eGraphics, pipeline.handle());
-  push_descriptors(commands_, pipeline, bindings);
-  bound_ = &pipeline;
-}
-
-void Draw::push_bytes(std::span<const std::byte> bytes) {
-  commands_.pushConstants<std::byte>(bound_->layout(), vk::ShaderStageFlagBits::eAllGraphics, 0, bytes);
-}
-
-void Draw::stencil_reference(std::uint32_t value) {
-  commands_.setStencilReference(vk::StencilFaceFlagBits::eFrontAndBack, value);
-}
-
-void Draw::geometry(const Buffer& vertices, const Buffer& indices) {
-  commands_.bindVertexBuffers(0, vertices.handle(), vk::DeviceSize{0});
-  commands_.bindIndexBuffer(indices.handle(), 0, vk::IndexType::eUint32);
-}
-
-void Draw::indexed(std::uint32_t first, std::uint32_t count) {
-  if (count > 0) commands_.drawIndexed(count, 1, first, 0, 0);
-}
-
-void Draw::full_screen_triangle() {
-  commands_.draw(3, 1, 0, 0);
-}
 
 Frame::Frame(const Device& device, PassTimes& times) : device_(device), times_(times) {
   commands_ = std::move(vk::raii::CommandBuffers(device.handle(), {.commandPool = *device.commands(),
@@ -243,60 +142,6 @@ void Frame::copy(const std::string& name, const Buffer& from, const Image& to) {
 
 void Frame::to_host(const Buffer& buffer) {
   use(buffer, {Stage::eHost, AccessBit::eHostRead});
-}
-
-void Frame::use(const Binding& binding, vk::PipelineStageFlags2 stages) {
-  const auto read =
-      binding.kind == Kind::sampled_image ? AccessBit::eShaderSampledRead : AccessBit::eShaderStorageRead;
-  Access access{stages, read, vk::ImageLayout::eUndefined, binding.writes};
-  if (binding.writes) access.access |= AccessBit::eShaderStorageWrite;
-  if (binding.image != nullptr) {
-    access.layout = binding.kind == Kind::sampled_image ? vk::ImageLayout::eShaderReadOnlyOptimal
-                                                        : vk::ImageLayout::eGeneral;
-    use(*binding.image, access);
-  } else {
-    use(*binding.buffer, access);
-  }
-}
-
-void Frame::use(const Image& image, const Access& access) {
-  const auto old_layout = image.state().layout;
-  const Wait wait = advance(image.state(), access.stages, access.access, access.layout, access.writes);
-  if (!wait.needed) return;
-  image_barriers_.push_back({.srcStageMask = wait.stages,
-                             .srcAccessMask = wait.access,
-                             .dstStageMask = access.stages,
-                             .dstAccessMask = access.access,
-                             .oldLayout = old_layout,
-                             .newLayout = access.layout,
-                             .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-                             .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-                             .image = image.handle(),
-                             .subresourceRange = {image.aspect(), 0, 1, 0, image.shape().layers}});
-}
-
-void Frame::use(const Buffer& buffer, const Access& access) {
-  const Wait wait =
-      advance(buffer.state(), access.stages, access.access, vk::ImageLayout::eUndefined, access.writes);
-  if (!wait.needed) return;
-  buffer_barriers_.push_back({.srcStageMask = wait.stages,
-                              .srcAccessMask = wait.access,
-                              .dstStageMask = access.stages,
-                              .dstAccessMask = access.access,
-                              .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-                              .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-                              .buffer = buffer.handle(),
-                              .size = VK_WHOLE_SIZE});
-}
-
-void Frame::flush_barriers() {
-  if (image_barriers_.empty() && buffer_barriers_.empty()) return;
-  commands_.pipelineBarrier2({.bufferMemoryBarrierCount = static_cast<std::uint32_t>(buffer_barriers_.size()),
-                              .pBufferMemoryBarriers = buffer_barriers_.data(),
-                              .imageMemoryBarrierCount = static_cast<std::uint32_t>(image_barriers_.size()),
-                              .pImageMemoryBarriers = image_barriers_.data()});
-  image_barriers_.clear();
-  buffer_barriers_.clear();
 }
 
 void Frame::submit_and_wait() {

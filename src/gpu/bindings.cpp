@@ -1,0 +1,76 @@
+#include "bindings.hpp"
+
+#include <cassert>
+
+namespace lichtveld::gpu {
+
+Binding sampled(const Image& image, const vk::raii::Sampler& sampler) {
+  return {.kind = Kind::sampled_image, .image = &image, .sampler = *sampler};
+}
+Binding reads(const Image& image) {
+  return {.kind = Kind::storage_image, .image = &image};
+}
+Binding writes(const Image& image) {
+  return {.kind = Kind::storage_image, .image = &image, .writes = true};
+}
+Binding reads(const Buffer& buffer) {
+  return {.kind = Kind::storage_buffer, .buffer = &buffer};
+}
+Binding writes(const Buffer& buffer) {
+  return {.kind = Kind::storage_buffer, .buffer = &buffer, .writes = true};
+}
+
+void push_descriptors(const vk::raii::CommandBuffer& commands, const Pipeline& pipeline,
+                      const std::vector<Binding>& bindings) {
+  assert(bindings.size() == pipeline.kinds().size());
+  std::vector<vk::DescriptorImageInfo> images(bindings.size());
+  std::vector<vk::DescriptorBufferInfo> buffers(bindings.size());
+  std::vector<vk::WriteDescriptorSet> writes;
+  for (std::uint32_t index = 0; index < bindings.size(); ++index) {
+    const Binding& binding = bindings[index];
+    assert(binding.kind == pipeline.kinds()[index]);
+    if (binding.image != nullptr)
+      images[index] = vk::DescriptorImageInfo{.sampler = binding.sampler,
+                                              .imageView = binding.image->view(),
+                                              .imageLayout = binding.kind == Kind::sampled_image
+                                                                 ? vk::ImageLayout::eShaderReadOnlyOptimal
+                                                                 : vk::ImageLayout::eGeneral};
+    else
+      buffers[index] = vk::DescriptorBufferInfo{.buffer = binding.buffer->handle(), .range = VK_WHOLE_SIZE};
+    writes.push_back({.dstBinding = index,
+                      .descriptorCount = 1,
+                      .descriptorType = descriptor_type(binding.kind),
+                      .pImageInfo = &images[index],
+                      .pBufferInfo = &buffers[index]});
+  }
+  if (!writes.empty()) commands.pushDescriptorSetKHR(pipeline.bind_point(), pipeline.layout(), 0, writes);
+}
+
+void Draw::bind(const GraphicsPipeline& pipeline, const std::vector<Binding>& bindings) {
+  commands_.bindPipeline(vk::PipelineBindPoint::eGraphics, pipeline.handle());
+  push_descriptors(commands_, pipeline, bindings);
+  bound_ = &pipeline;
+}
+
+void Draw::push_bytes(std::span<const std::byte> bytes) {
+  commands_.pushConstants<std::byte>(bound_->layout(), vk::ShaderStageFlagBits::eAllGraphics, 0, bytes);
+}
+
+void Draw::stencil_reference(std::uint32_t value) {
+  commands_.setStencilReference(vk::StencilFaceFlagBits::eFrontAndBack, value);
+}
+
+void Draw::geometry(const Buffer& vertices, const Buffer& indices) {
+  commands_.bindVertexBuffers(0, vertices.handle(), vk::DeviceSize{0});
+  commands_.bindIndexBuffer(indices.handle(), 0, vk::IndexType::eUint32);
+}
+
+void Draw::indexed(std::uint32_t first, std::uint32_t count) {
+  if (count > 0) commands_.drawIndexed(count, 1, first, 0, 0);
+}
+
+void Draw::full_screen_triangle() {
+  commands_.draw(3, 1, 0, 0);
+}
+
+}  // namespace lichtveld::gpu
