@@ -29,8 +29,13 @@ BakeJob::NodeMove parse_move(const std::string& text, const scene::Scene& scene)
 
 void bake(const BakeOptions& options) {
   lightfield::check(options.settings);
-  for (const auto& file : {options.out, options.png, options.report})
-    if (!file.empty()) check_place(file);
+  check_place(options.out, ".exr");
+  if (!options.png.empty()) check_place(options.png, ".png");
+  if (!options.report.empty()) check_place(options.report);
+  if (!options.dump.empty()) make_folder(options.dump);
+  if (options.dump_psf >= options.settings.psf)
+    throw UsageError("--dump-psf " + std::to_string(options.dump_psf) + ": the directions are numbered 0.." +
+                     std::to_string(options.settings.psf - 1));
   BakeJob job{.scene = scene::load(options.scene), .moves = {}};
   scene::check_atlas(job.scene, options.settings.size);
   for (const auto& text : options.moves) job.moves.push_back(parse_move(text, job.scene));
@@ -84,7 +89,18 @@ void add_bake(CLI::App& application) {
   command->add_option("--seed", options->seed, "Of --method reference: the same seed gives the same picture")
       ->capture_default_str();
   add_device_options(*command, options->device);
-  command->callback([options] { bake(*options); });
+  command->callback([options, command] {
+    // What the other method would take is a mistake, not something to pass over in silence.
+    const std::vector<std::string> of_others =
+        options->method == Method::reference
+            ? std::vector<std::string>{"--psf",  "--abuffer", "--sort",    "--layers",
+                                       "--live", "--dump",    "--dump-psf"}
+            : std::vector<std::string>{"--spp", "--seed"};
+    for (const auto& name : of_others)
+      if (command->count(name) > 0)
+        throw UsageError(name + " means nothing to --method " + name_of(options->method) + "; leave it out");
+    bake(*options);
+  });
 }
 
 }  // namespace lichtveld::commands

@@ -12,7 +12,6 @@ Baked bake_thesis(const BakeOptions& options, const BakeJob& job) {
   const gpu::Device device(options.device);
   lightfield::StageObserver observer;
   if (!options.dump.empty()) {
-    std::filesystem::create_directories(options.dump);
     observer = [&](const std::string& stage, const gpu::Image& image) {
       write_exr(std::filesystem::path(options.dump) / (stage + ".exr"), gpu::download<glm::vec4>(device, image),
                 image.shape().width);

@@ -52,6 +52,7 @@ std::vector<PassRow> rows_for(const std::string& scene, const BenchOptions& opti
 
 void bench(const BenchOptions& options) {
   if (options.repeats < 1) throw UsageError("--repeats: at least 1");
+  make_folder(options.out);
   const gpu::Device device(options.device);
   std::vector<PassRow> rows;
   for (const auto& file : options.scenes) {
@@ -68,14 +69,14 @@ void bench(const BenchOptions& options) {
       }
     rows.insert(rows.end(), of_scene.begin(), of_scene.end());
   }
-  fs::create_directories(options.out);
   write_text(fs::path(options.out) / "passes.csv", pass_csv(rows));
-  plot_passes(rows, options.out);
   std::printf(
       "%s, medians of %u runs, %u bounces, ms of all calls of a pass in one solve\n\n%s\nThe thesis' findings "
       "here:\n%s",
       device.summary().name.c_str(), options.repeats, options.bounces, pass_text(rows).c_str(),
       findings(rows).c_str());
+  std::fflush(stdout);
+  plot_passes(rows, options.out);
   check_validation(device);
 }
 

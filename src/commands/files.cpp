@@ -20,6 +20,19 @@ void check_place(const fs::path& file) {
     throw UsageError(file.string() + " cannot be written: it is a folder; name a file in it");
 }
 
+void check_place(const fs::path& file, const std::string& extension) {
+  check_place(file);
+  if (file.extension() != extension)
+    throw UsageError(file.string() + " cannot be written: this is a " + extension + " file; name it so");
+}
+
+void make_folder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (!fs::is_directory(folder))
+    throw UsageError(folder.string() + " cannot be made a folder" + (error ? ": " + error.message() : ""));
+}
+
 void write_whole(const fs::path& file, const std::function<void(const fs::path&)>& write) {
   check_place(file);
   fs::path temporary = file;

@@ -14,6 +14,12 @@ namespace lichtveld::commands {
 // work.
 void check_place(const std::filesystem::path& file);
 
+// The same for a file whose format its extension names: ".exr".
+void check_place(const std::filesystem::path& file, const std::string& extension);
+
+// Makes a folder for output, and those above it. Throws UsageError if that cannot be.
+void make_folder(const std::filesystem::path& folder);
+
 // Calls write(temporary), then renames the temporary file to `file`; removes it if either fails. The temporary
 // keeps the extension. Throws UsageError if the folder is not there or cannot be written to.
 void write_whole(const std::filesystem::path& file,

@@ -16,8 +16,8 @@ std::string data_block(const std::vector<PassRow>& rows) {
   std::string block = "$passes << END\n";
   for (const auto& row : rows) {
     const auto& settings = row.settings;
-    block += fmt::format("\"{} {} {}² {}\"", name_of(settings.abuffer), name_of(settings.sort),
-                         settings.size, settings.psf);
+    block += fmt::format("\"{} {} {}² {}\"", name_of(settings.abuffer), name_of(settings.sort), settings.size,
+                         settings.psf);
     for (const auto& pass : pass_names())
       block += fmt::format(" {:.6f}", pass_ms(row, pass) / (settings.psf * *settings.bounces));
     block += "\n";
@@ -44,7 +44,8 @@ bool plot_passes(const std::vector<PassRow>& rows, const std::filesystem::path& 
       "noenhanced\n"
       "set style data histograms\nset style histogram rowstacked\nset style fill solid 0.9 border -1\nset "
       "boxwidth 0.8\n"
-      "set xtics rotate by 90 right noenhanced font ',9'\nset bmargin 13\nset xlabel 'A-buffer, sort, size, PSFs' offset 0,-8\nset ylabel 'milliseconds a PSF and bounce'\nset grid "
+      "set xtics rotate by 90 right noenhanced font ',9'\nset bmargin 13\nset xlabel 'A-buffer, sort, size, "
+      "PSFs' offset 0,-8\nset ylabel 'milliseconds a PSF and bounce'\nset grid "
       "ytics\n"
       "set key top right noenhanced invert\nset yrange [0:*]\n";
   std::string script = data_block(rows) + settings;

@@ -14,7 +14,7 @@ struct Quality {
   std::uint32_t size, psf;
 };
 
-// Each step costs about four times the one before.
+// Each step costs two to four times the one before, where the work is bound by texels.
 constexpr std::array<Quality, 6> coarse_to_fine = {
     {{64, 24}, {64, 96}, {128, 96}, {128, 384}, {256, 384}, {256, 1536}}};
 
@@ -31,18 +31,19 @@ std::chrono::duration<double, std::milli> time_of(const gpu::Device& device, con
 }  // namespace
 
 lightfield::Settings finest_within(std::chrono::milliseconds budget, const gpu::Device& device,
-                                   const scene::Scene& scene, lightfield::Settings settings) {
+                                   const scene::Scene& scene, lightfield::Settings settings,
+                                   const std::function<bool()>& stopped) {
   lightfield::Settings finest = settings;
   finest.size = coarse_to_fine.front().size;
   finest.psf = coarse_to_fine.front().psf;
   for (const Quality& quality : coarse_to_fine) {
+    if (stopped()) break;
     settings.size = quality.size;
     settings.psf = quality.psf;
     const auto took = time_of(device, scene, settings);
     spdlog::info("--size {} --psf {}: {:.0f} ms a map", quality.size, quality.psf, took.count());
     if (took > budget) break;
     finest = settings;
-    if (took * 2 > budget) break;  // the next one cannot fit
   }
   return finest;
 }

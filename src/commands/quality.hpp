@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <functional>
 
 #include "lichtveld/gpu/device.hpp"
 #include "lichtveld/lightfield/settings.hpp"
@@ -10,8 +11,9 @@
 namespace lichtveld::commands {
 
 // Times light maps from coarse to fine on this device and returns `settings` with the size and PSFs of the
-// finest one that takes at most `budget`; the coarsest one if none does.
+// finest one that takes at most `budget`; the coarsest one if none does. Ends early once stopped() is true.
 lightfield::Settings finest_within(std::chrono::milliseconds budget, const gpu::Device& device,
-                                   const scene::Scene& scene, lightfield::Settings settings);
+                                   const scene::Scene& scene, lightfield::Settings settings,
+                                   const std::function<bool()>& stopped);
 
 }  // namespace lichtveld::commands

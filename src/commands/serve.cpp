@@ -96,7 +96,9 @@ void serve(ServeOptions options) {
   const auto scene = scene::load(options.scene);
   const auto token = read_token(options.token_file);
   const gpu::Device device(options.device);
-  if (!options.chosen_quality) options.settings = finest_within(budget_a_map, device, scene, options.settings);
+  if (!options.chosen_quality)
+    options.settings =
+        finest_within(budget_a_map, device, scene, options.settings, [&] { return inbox.stopped(); });
   scene::check_atlas(scene, options.settings.size);
 
   RenderLoop loop(scene, device, options.settings);

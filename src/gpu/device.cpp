@@ -63,7 +63,30 @@ std::string missing_features(const vk::raii::PhysicalDevice& physical) {
   want(newer.dynamicRendering, "dynamicRendering");
   want(newer.synchronization2, "synchronization2");
   want(newer.maintenance4, "maintenance4");
+  const auto can = [&](vk::Format format, vk::FormatFeatureFlags uses) {
+    return (physical.getFormatProperties(format).optimalTilingFeatures & uses) == uses;
+  };
+  want(can(vk::Format::eR32G32B32A32Sfloat, vk::FormatFeatureFlagBits::eSampledImageFilterLinear |
+                                                vk::FormatFeatureFlagBits::eColorAttachment |
+                                                vk::FormatFeatureFlagBits::eStorageImage),
+       "filtering and storing of 32-bit float images");
+  want(can(vk::Format::eS8Uint, vk::FormatFeatureFlagBits::eDepthStencilAttachment), "8-bit stencil images");
   return missing;
+}
+
+// Samples a pixel of the A-buffer's colour and stencil images together.
+std::uint32_t most_samples(const vk::raii::PhysicalDevice& physical) {
+  const auto counts = [&](vk::Format format, vk::ImageUsageFlags attachment) {
+    return physical
+        .getImageFormatProperties(format, vk::ImageType::e2D, vk::ImageTiling::eOptimal,
+                                  attachment | vk::ImageUsageFlagBits::eSampled)
+        .sampleCounts;
+  };
+  const vk::SampleCountFlags both =
+      counts(vk::Format::eR32G32B32A32Sfloat, vk::ImageUsageFlagBits::eColorAttachment) &
+      counts(vk::Format::eS8Uint, vk::ImageUsageFlagBits::eDepthStencilAttachment);
+  // The mask's highest bit is the highest count.
+  return std::bit_floor(static_cast<std::uint32_t>(static_cast<VkSampleCountFlags>(both)));
 }
 
 DeviceSummary summarise(const vk::raii::PhysicalDevice& physical) {
@@ -72,14 +95,10 @@ DeviceSummary summarise(const vk::raii::PhysicalDevice& physical) {
   const auto& properties = chain.get<vk::PhysicalDeviceProperties2>().properties;
   const auto& driver = chain.get<vk::PhysicalDeviceDriverProperties>();
   const auto& limits = properties.limits;
-  const auto samples = static_cast<std::uint32_t>(static_cast<VkSampleCountFlags>(
-      limits.framebufferColorSampleCounts & limits.framebufferStencilSampleCounts &
-      limits.sampledImageColorSampleCounts & limits.sampledImageStencilSampleCounts));
   DeviceSummary summary;
   summary.name = properties.deviceName.data();
   summary.type = vk::to_string(properties.deviceType);
   summary.driver = std::string(driver.driverName.data()) + ", " + driver.driverInfo.data();
-  summary.samples = std::bit_floor(samples);  // the mask's highest bit is the highest count
   summary.max_image_size = limits.maxImageDimension2D;
   summary.max_storage_buffer = limits.maxStorageBufferRange;
   summary.subgroup_size = chain.get<vk::PhysicalDeviceSubgroupProperties>().subgroupSize;
@@ -87,6 +106,7 @@ DeviceSummary summarise(const vk::raii::PhysicalDevice& physical) {
   for (const auto& heap : std::span(memory.memoryHeaps.data(), memory.memoryHeapCount))
     if (heap.flags & vk::MemoryHeapFlagBits::eDeviceLocal) summary.memory += heap.size;
   summary.missing = missing_features(physical);
+  if (summary.missing.empty()) summary.samples = most_samples(physical);
   return summary;
 }
 
@@ -114,7 +134,8 @@ std::vector<vk::raii::PhysicalDevice> ordered_devices(const vk::raii::Instance& 
 
 bool matches(const DeviceSummary& summary, std::size_t index, const std::string& wanted) {
   if (wanted.empty()) return summary.missing.empty();
-  return wanted == std::to_string(index) || summary.name.find(wanted) != std::string::npos;
+  if (wanted.find_first_not_of("0123456789") == std::string::npos) return wanted == std::to_string(index);
+  return summary.name.find(wanted) != std::string::npos;
 }
 
 vk::raii::PhysicalDevice choose(const vk::raii::Instance& instance, const std::string& wanted) {

@@ -139,6 +139,9 @@ asio::awaitable<Signaling::Ending> Signaling::connect_once() {
     }
     spdlog::warn("{} declined: {}; trying again", where, answer);
     co_return Ending::lost;
+  } catch (const std::exception& error) {
+    spdlog::error("signaling: {}; trying again", error.what());
+    co_return Ending::lost;
   }
 }
 

@@ -1,6 +1,8 @@
 // What strangers get wrong: the exit status, and a message that names the culprit and what to try.
 #include <gmock/gmock.h>
 
+#include <csignal>
+
 #include "commands_run.hpp"
 #include "scene_builder.hpp"
 
@@ -52,7 +54,12 @@ INSTANTIATE_TEST_SUITE_P(
                    " --signaling ws://127.0.0.1:1/server --token-file nowhere",
                2,
                {"reference", "thesis"}},
-        BadUse{"Spp", bake + "--method reference --spp 0", 2, {"0", "1..1000000"}},
+        BadUse{"ReferenceWithPsf", bake + "--method reference", 2, {"--psf", "reference", "leave it out"}},
+        BadUse{"ThesisWithSpp", bake + "--spp 16", 2, {"--spp", "thesis", "leave it out"}},
+        BadUse{"DumpPsf", bake + "--dump-psf 8", 2, {"--dump-psf 8", "0..7"}},
+        BadUse{"DumpIntoAFile", bake + "--dump /dev/null", 2, {"/dev/null", "folder"}},
+        BadUse{"OutIsNoExr", "bake " + cornell + " --out OUT.png --psf 8", 2, {".exr"}},
+        BadUse{"Spp", "bake " + cornell + " --out OUT --method reference --spp 0", 2, {"0", "1..1000000"}},
         BadUse{"UnknownMethod", bake + "--method magic", 2, {"magic", "thesis"}},
         BadUse{"UnknownABuffer", bake + "--abuffer magic", 2, {"magic", "list|stencil"}},
         BadUse{"UnknownSort", bake + "--sort magic", 2, {"magic", "bitonic|compare-swap|scan"}},
@@ -100,7 +107,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(BadDevice, NoDriverIsStatus3) {
   const std::string none = "VK_ICD_FILENAMES=/nonexistent VK_DRIVER_FILES=/nonexistent";
-  for (const auto& command : {std::string("info"), "bake " + cornell + " --out /dev/null"}) {
+  for (const auto& command : {std::string("info"), "bake " + cornell + " --out /tmp/x.exr"}) {
     const auto ran = run(command, none);
     EXPECT_EQ(ran.status, 3) << ran.output;
     EXPECT_THAT(ran.output, HasSubstr("mesa-vulkan-drivers"));
@@ -109,7 +116,7 @@ TEST(BadDevice, NoDriverIsStatus3) {
 
 TEST(BadDevice, MissingValidationLayersAreNamed) {
   const TempFolder folder;
-  const auto ran = run("bake " + cornell + " --validation --out /dev/null",
+  const auto ran = run("bake " + cornell + " --validation --out /tmp/x.exr",
                        "XDG_DATA_DIRS=/nonexistent VK_LAYER_PATH=" + folder.path().string());
   EXPECT_EQ(ran.status, 3) << ran.output;
   EXPECT_THAT(ran.output, HasSubstr("vulkan-validationlayers"));
@@ -131,11 +138,28 @@ TEST(BadScene, IsNamedWithItsNodes) {
   EXPECT_THAT(truncated.output, HasSubstr("cut.glb"));
 }
 
-TEST(BadOutput, AnOlderFileSurvivesAFailure) {
+// The disk is "full" after 512 bytes.
+TEST(BadOutput, AnOlderFileSurvivesAFailureToWrite) {
   const TempFolder folder;
   const auto old = folder.write("E.exr", "an older result");
-  EXPECT_EQ(run("bake nowhere.glb --out " + old.string()).status, 2);
+  const auto ran = run("bake " + cornell + " --size 128 --psf 8 --bounces 1 --out " + old.string(),
+                       "trap '' XFSZ; ulimit -f 1;");
+  EXPECT_EQ(ran.status, 2) << ran.output;
+  EXPECT_THAT(ran.output, AllOf(HasSubstr(old.string()), HasSubstr("cannot be written")));
   EXPECT_EQ(std::filesystem::file_size(old), 15u);
+  const std::filesystem::directory_iterator files(folder.path());
+  EXPECT_EQ(std::distance(begin(files), end(files)), 1) << "a temporary file is left behind";
+}
+
+TEST(Serve, EndsOnASecondSignalWhateverItDoes) {
+  const TempFolder folder;
+  const auto token = folder.write("token", "secret").string();
+  // A first light map of minutes, which the first signal waits for.
+  const auto ran = shell(LICHTVELD_BINARY " serve --size 1024 --psf 6144 --scene " + cornell +
+                         " --signaling ws://127.0.0.1:1/server --token-file " + token +
+                         " >/dev/null 2>&1 & p=$!; sleep 1; kill $p; sleep 2; kill $p; wait $p");
+  EXPECT_EQ(ran.status, 128 + SIGTERM);
+  EXPECT_LT(ran.seconds, 10);
 }
 
 TEST(Serve, EndsAtOnceOnSigtermWhileSignalingIsAway) {
@@ -146,6 +170,7 @@ TEST(Serve, EndsAtOnceOnSigtermWhileSignalingIsAway) {
                        "timeout --signal=TERM 5");
   EXPECT_EQ(ran.status, 124) << ran.output;  // timeout's own: it had to ask
   EXPECT_THAT(ran.output, AllOf(HasSubstr("stopped: 0 maps"), Not(HasSubstr("Killed"))));
+  EXPECT_LT(ran.seconds, 8);
 }
 
 }  // namespace

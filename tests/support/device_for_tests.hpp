@@ -1,4 +1,4 @@
-// The device of a test: validated, and any message of the layers fails the test that caused it.
+// The device of a test: lavapipe, which every machine has and goldens were drawn by; validated, and any message of the layers fails the test that caused it.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ class WithDevice : public ::testing::Test {
   }
 
  private:
-  gpu::Device device_{{.device = "", .validation = true}};
+  gpu::Device device_{{.device = "llvmpipe", .validation = true}};
 };
 
 }  // namespace lichtveld::testing

@@ -26,6 +26,11 @@ TEST(DeviceChoice, TakesANumberOrAPartOfAName) {
   EXPECT_EQ(Device({.device = name.substr(1, 4)}).summary().name, name);
 }
 
+TEST(DeviceChoice, ANumberIsNoPartOfAName) {
+  EXPECT_THROW(Device({.device = "2"}), NoDevice) << "llvmpipe's name holds 256";
+  EXPECT_THROW(Device({.device = "99"}), NoDevice);
+}
+
 TEST(DeviceChoice, NamesWhatThereIsWhenNothingMatches) {
   try {
     Device({.device = "no such device"});
@@ -90,7 +95,7 @@ TEST_F(Gpu, ImagesComeBackAsTheyWereSent) {
 
 // If this fails, the layers are not on, and every other test's silence means nothing.
 TEST(Validation, SeesAMissingBarrier) {
-  const Device device({.device = "", .validation = true});
+  const Device device({.device = "llvmpipe", .validation = true});
   const Buffer buffer(device, "test/raced", 64, transfer);
   const vk::raii::CommandBuffers made(device.handle(),
                                       {.commandPool = *device.commands(), .commandBufferCount = 1});

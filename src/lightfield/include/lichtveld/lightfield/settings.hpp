@@ -27,8 +27,8 @@ void check(const Settings& settings);
 
 struct Solution {
   std::uint32_t bounces = 0;
-  // What may still be missing from E, as a share of its mean: largest change in the last bounce * bound, where
-  // the bound max albedo / (1 - max albedo) sums all later bounces. Infinite where some albedo is 1.
+  // What may still be missing from E, as a share of its mean: largest change in the last bounce / (1 - max
+  // albedo), which is more than all later bounces add. Infinite where some albedo is 1.
   double residual = 0;
   std::uint32_t texels_valid = 0;
   std::uint32_t depth_layers_max = 0;  // most layers that any PSF pixel has
