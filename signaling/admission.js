@@ -46,6 +46,8 @@ export function sceneHash(request) {
 export function refuseUpgrade(socket, status, error) {
   const body = JSON.stringify({ error });
   socket.on('error', () => socket.destroy());
+  // It stays half open and has no timeout after an upgrade: who never ends its side would keep its place.
+  socket.once('finish', () => socket.destroy());
   socket.end(
     `HTTP/1.1 ${status} ${STATUS_CODES[status]}\r\nConnection: close\r\nContent-Type: application/json\r\n` +
       `Content-Length: ${Buffer.byteLength(body)}\r\n\r\n${body}`,

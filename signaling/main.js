@@ -37,6 +37,25 @@ function reading(what, path, read) {
   }
 }
 
+/** The only word of the file, by the render server's idea of white space. @type {(path: string) => string} */
+function readToken(path) {
+  const text = reading('token-file', path, () => readFileSync(path, 'utf8'));
+  const words = text.split(/[ \t\n\v\f\r]+/).filter((word) => word !== '');
+  if (words.length === 0)
+    throw new InputError(`the token file ${path} is empty: write a long random word into it`);
+  if (words.length > 1)
+    throw new InputError(`the token file ${path} has white space within the token: write one long random word`);
+  return words[0];
+}
+
+/** @type {(path: string) => Buffer} */
+function readScene(path) {
+  const bytes = reading('scene', path, () => readFileSync(path));
+  if (bytes.toString('latin1', 0, 4) !== 'glTF')
+    throw new InputError(`the scene ${path} is no binary glTF file: give a .glb with --scene`);
+  return bytes;
+}
+
 function readOptions() {
   let values;
   try {
@@ -63,11 +82,7 @@ function readOptions() {
   for (const name of ['token-file', 'client', 'scene'])
     if (!values[name]) throw new InputError(`--${name} is missing\n${usage}`);
 
-  const token = reading('token-file', values['token-file'], () =>
-    readFileSync(values['token-file'], 'utf8'),
-  ).trim();
-  if (token === '')
-    throw new InputError(`the token file ${values['token-file']} is empty: write a long random word into it`);
+  const token = readToken(values['token-file']);
   const page = join(values.client, 'index.html');
   if (!reading('client', page, () => statSync(page)).isFile())
     throw new InputError(`${page} is no file: build the web client (npm run build --workspace web-client)`);
@@ -76,7 +91,7 @@ function readOptions() {
     port: toNumber(values.port, '--port', 65535),
     token,
     clientFolder: values.client,
-    scene: reading('scene', values.scene, () => readFileSync(values.scene)),
+    scene: readScene(values.scene),
     allowedOrigins: values['allow-origin'],
     limits: {
       maxClients: toNumber(values['max-clients'], '--max-clients', 100_000),

@@ -1,4 +1,6 @@
 import assert from 'node:assert/strict';
+import { once } from 'node:events';
+import { connect } from 'node:net';
 import { test } from 'node:test';
 import { Peer, metric, populate, start } from './harness.js';
 
@@ -73,4 +75,25 @@ test('a full room and a full address are told to the browser, and a place is fre
 test('other paths do not upgrade', async (t) => {
   const signaling = await start(t);
   assert.equal((await new Peer(`${signaling.ws}/elsewhere`).refused).status, 404);
+});
+
+test('refused upgrades that never end their side do not keep their places', { timeout: 5000 }, async (t) => {
+  const sockets = [];
+  t.after(() => sockets.forEach((socket) => socket.destroy())); // first, or the server would wait for them
+  const signaling = await start(t, { limits: { maxTcpConnections: 2 } });
+  for (const path of ['/elsewhere', '/server']) {
+    const socket = connect({ host: '127.0.0.1', port: signaling.port, allowHalfOpen: true });
+    sockets.push(socket);
+    socket.on('error', () => {});
+    socket.write(
+      `GET ${path} HTTP/1.1\r\nHost: a\r\nConnection: Upgrade\r\nUpgrade: websocket\r\n` +
+        'Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\nSec-WebSocket-Version: 13\r\n\r\n',
+    );
+    let answer = '';
+    socket.on('data', (data) => (answer += data));
+    await once(socket, 'end');
+    assert.match(answer, /^HTTP\/1\.1 40[14] .*\{"error":".+"\}$/s);
+  }
+  await new Promise((resolve) => setTimeout(resolve, 200));
+  assert.equal((await Peer.client(signaling.ws).next(1000)).type, 'welcome');
 });

@@ -45,15 +45,22 @@ test('bad arguments and files end with 2 and name the culprit', async (t) => {
   const site = makeSite(t);
   const empty = join(site.root, 'empty');
   writeFileSync(empty, ' \n');
+  const twoWords = join(site.root, 'two-words');
+  writeFileSync(twoWords, 'correct horse\n');
+  const text = join(site.root, 'scene.gltf');
+  writeFileSync(text, '{"asset": {"version": "2.0"}}');
   const cases = [
     [[], /--token-file is missing/],
     [['--nonsense'], /nonsense/],
     [[...argsOf(site), '--port', '99999'], /--port wants.*99999/],
     [[...argsOf(site), '--token-file', join(site.root, 'none')], /token-file .*none: ENOENT/],
     [[...argsOf(site), '--token-file', empty], /empty is empty/],
+    [[...argsOf(site), '--token-file', twoWords], /two-words has white space within/],
     [[...argsOf(site), '--client', join(site.root, 'none')], /client .*none/],
     [[...argsOf(site), '--scene', join(site.root, 'none.glb')], /scene .*none\.glb: ENOENT/],
     [[...argsOf(site), '--scene', site.root], /scene .*EISDIR/],
+    [[...argsOf(site), '--scene', text], /scene\.gltf is no binary glTF.*\.glb/],
+    [[...argsOf(site), '--scene', empty], /empty is no binary glTF/],
   ];
   for (const [args, message] of cases) {
     const { code, err } = await run(t, args).exited;

@@ -41,6 +41,22 @@ test('another scene than the one that is lit: the page says so and draws nothing
   assert.equal(draws(await player.screenshot('another-scene-canvas')), false);
 });
 
+test('a scene that cannot be drawn: the page says why, and goes on when it can be had', async (t) => {
+  const folder = mkdtempSync(join(tmpdir(), 'lichtveld-e2e-'));
+  t.after(() => rmSync(folder, { recursive: true }));
+  const scene = join(folder, 'cut.glb');
+  writeFileSync(scene, readFileSync(scenePath).subarray(0, 5000));
+  const { url } = await signaling(t, { scene });
+  const player = await (await launch(t)).open(url);
+  const card = player.page.locator('#trouble');
+  await card.getByText('The room cannot be loaded').waitFor();
+  assert.match(await trouble(player), /the scene file cannot be drawn \(.+\).*trying again in \d+ s/is);
+  assert.equal(await player.page.locator('#state').innerText(), 'No scene');
+  await player.screenshot('no-scene');
+  await player.page.route('**/scene.glb', (route) => route.fulfill({ path: scenePath }));
+  await card.getByText('No render server there').waitFor();
+});
+
 test('a full room says so, and lets the page in by itself when somebody leaves', async (t) => {
   const { url } = await signaling(t, { options: ['--max-clients', '1'] });
   const browser = await launch(t);

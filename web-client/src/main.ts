@@ -1,10 +1,9 @@
-import { Backoff } from './backoff';
 import { Controls } from './controls';
 import { exposeForDebugging } from './debug';
 import { decodeMap } from './light_map';
 import { Receiver, type Place } from './protocol';
 import { Room } from './room';
-import { loadScene, type SceneFile } from './scene_file';
+import { fetchScene } from './scene_file';
 import { Session, type State } from './session';
 import type { Role, SceneOffer } from './signaling';
 import { MapStatistics } from './statistics';
@@ -21,19 +20,6 @@ export interface Knowledge {
   places: readonly Place[];
 }
 const known: Knowledge = { state: 'connecting', error: '', role: undefined, places: [] };
-
-/** The scene comes once; where it cannot be had, it is asked for again. */
-async function fetchScene(room: Room): Promise<SceneFile> {
-  const backoff = new Backoff();
-  for (;;) {
-    try {
-      return await loadScene('/scene.glb', room.surfaces);
-    } catch (error) {
-      known.error = String(error);
-      await new Promise((resolve) => setTimeout(resolve, backoff.next()));
-    }
-  }
-}
 
 function start(room: Room): void {
   let receiver = new Receiver();
@@ -67,8 +53,14 @@ function start(room: Room): void {
     decoding = false;
   };
 
-  const scene = fetchScene(room);
-  void scene.then((file) => room.show(file));
+  const scene = fetchScene('/scene.glb', room.surfaces, (reason, pause) => {
+    known.error = reason;
+    view.missScene({ reason, retryAt: performance.now() + pause });
+  });
+  void scene.then((file) => {
+    view.missScene(undefined);
+    room.show(file);
+  });
 
   const session = new Session({
     async hasScene(offer: SceneOffer) {

@@ -2,10 +2,11 @@ import { sha256 } from '@noble/hashes/sha2';
 import { bytesToHex } from '@noble/hashes/utils';
 import { DoubleSide, Mesh, type Material, type Object3D } from 'three';
 import { GLTFLoader, type GLTF } from 'three/addons/loaders/GLTFLoader.js';
+import { Backoff } from './backoff';
 
 export interface SceneFile {
   readonly root: Object3D;
-  /** The nodes with extras.movable, in the file's order. */
+  /** The outermost nodes with extras.movable, in the file's order. */
   readonly movable: readonly Object3D[];
   /** Of the file's bytes, 64 hex digits. crypto.subtle is missing on plain http, hence the library. */
   readonly sha256: string;
@@ -17,32 +18,70 @@ export interface Surfaces {
   readonly twoSided: Material;
 }
 
-/** Fetches and reads the scene. */
-export async function loadScene(url: string, surfaces: Surfaces): Promise<SceneFile> {
-  const response = await fetch(url, { cache: 'no-cache' });
-  if (!response.ok) throw new Error(`the scene ${url} could not be loaded: HTTP ${response.status}`);
-  const bytes = await response.arrayBuffer();
-  const gltf = await new GLTFLoader().parseAsync(bytes, '');
-  gltf.scene.traverse((object) => {
+/** Fetches and reads the scene. Rejects with a sentence for people, without its full stop. */
+async function loadScene(url: string, surfaces: Surfaces): Promise<SceneFile> {
+  const response = await fetch(url, { cache: 'no-cache' }).catch(() => {
+    throw new Error('the server cannot be reached');
+  });
+  if (!response.ok)
+    throw new Error(`the server answered HTTP ${response.status} for ${new URL(response.url).pathname}`);
+  const bytes = await response.arrayBuffer().catch(() => {
+    throw new Error('the scene file broke off on its way');
+  });
+  try {
+    const gltf = await new GLTFLoader().parseAsync(bytes, '');
+    prepare(gltf.scene, surfaces);
+    return {
+      root: gltf.scene,
+      movable: movableNodes(gltf),
+      sha256: bytesToHex(sha256(new Uint8Array(bytes))),
+    };
+  } catch (error) {
+    throw new Error(`the scene file cannot be drawn (${reasonOf(error)})`);
+  }
+}
+
+/**
+ * Asks for the scene until it can be had: a server that is away or has a broken file may be restarted.
+ * @param onTrouble  called after each attempt that failed, with the milliseconds until the next one
+ */
+export async function fetchScene(
+  url: string,
+  surfaces: Surfaces,
+  onTrouble: (reason: string, pause: number) => void,
+  backoff = new Backoff(),
+): Promise<SceneFile> {
+  for (;;) {
+    try {
+      return await loadScene(url, surfaces);
+    } catch (error) {
+      const pause = backoff.next();
+      onTrouble(reasonOf(error), pause);
+      await new Promise((resolve) => setTimeout(resolve, pause));
+    }
+  }
+}
+
+const reasonOf = (error: unknown): string => (error instanceof Error ? error.message : String(error));
+
+function prepare(root: Object3D, surfaces: Surfaces): void {
+  root.traverse((object) => {
     if (!(object instanceof Mesh)) return;
     const { side } = object.material as Material;
     object.material = side === DoubleSide ? surfaces.twoSided : surfaces.oneSided;
     if (!object.geometry.hasAttribute('uv1')) throw new Error(`the mesh ${object.name} has no TEXCOORD_1`);
   });
-  return { root: gltf.scene, movable: movableNodes(gltf), sha256: bytesToHex(sha256(new Uint8Array(bytes))) };
 }
 
+/** Like the server, only the outermost of each branch: what is inside moves along. */
 function movableNodes(gltf: GLTF): Object3D[] {
-  const nodes = (gltf.parser.json as { nodes: { extras?: { movable?: unknown } }[] }).nodes;
+  const nodes = (gltf.parser.json as { nodes?: { extras?: { movable?: unknown } }[] }).nodes ?? [];
   const found: { index: number; object: Object3D }[] = [];
-  gltf.scene.traverse((object) => {
+  const visit = (object: Object3D): void => {
     const index = gltf.parser.associations.get(object)?.nodes;
-    if (
-      index !== undefined &&
-      nodes[index]?.extras?.movable === true &&
-      !found.some((one) => one.index === index)
-    )
-      found.push({ index, object });
-  });
+    if (index !== undefined && nodes[index]?.extras?.movable === true) found.push({ index, object });
+    else object.children.forEach(visit);
+  };
+  visit(gltf.scene);
   return found.sort((a, b) => a.index - b.index).map((one) => one.object);
 }

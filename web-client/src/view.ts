@@ -9,11 +9,14 @@ const element = <T extends HTMLElement = HTMLElement>(id: string): T => {
   return found as T;
 };
 
-interface Standing {
-  readonly state: State;
+interface Trouble {
   readonly reason: string;
   /** On performance.now()'s clock. */
   readonly retryAt?: number;
+}
+
+interface Standing extends Trouble {
+  readonly state: State;
 }
 
 /** What each state is called, and what somebody who sees it should know. `s` is the seconds until the next attempt. */
@@ -50,6 +53,13 @@ const words: Readonly<
   }),
 };
 
+/** Goes before the session's words: without the scene no light can be shown. */
+const withoutScene = (reason: string, s: number) => ({
+  short: 'No scene',
+  title: 'The room cannot be loaded',
+  text: `${sentence(reason)} Trying again in ${s} s.`,
+});
+
 const sentence = (text: string): string => `${text.charAt(0).toUpperCase()}${text.slice(1)}.`;
 
 /** Milliseconds for which the hint stays after its keys have first been used. */
@@ -60,6 +70,7 @@ export class View {
   readonly canvas = element<HTMLCanvasElement>('view');
   readonly arrowButtons = document.querySelectorAll<HTMLButtonElement>('#pad button');
   #standing: Standing = { state: 'connecting', reason: '' };
+  #sceneTrouble: Trouble | undefined;
   #hasLight = false;
   #hintTimer: ReturnType<typeof setTimeout> | undefined;
 
@@ -72,10 +83,17 @@ export class View {
     });
   }
 
-  stand(state: State, detail: { reason: string; retryAt?: number }): void {
+  stand(state: State, detail: Trouble): void {
     this.#standing = { state, ...detail };
     document.body.dataset['state'] = state;
     element('facts').hidden = true;
+    this.#write();
+  }
+
+  /** Why the scene could not be had; undefined once it is there. */
+  missScene(trouble: Trouble | undefined): void {
+    this.#sceneTrouble = trouble;
+    document.body.toggleAttribute('data-no-scene', trouble !== undefined);
     this.#write();
   }
 
@@ -115,13 +133,14 @@ export class View {
       element('fact-age').textContent = facts.age;
       element('fact-size').textContent = facts.size;
     }
-    if (this.#standing.retryAt !== undefined) this.#write();
+    if ((this.#sceneTrouble ?? this.#standing).retryAt !== undefined) this.#write();
   }
 
   #write(): void {
-    const { state, reason, retryAt } = this.#standing;
+    const { state } = this.#standing;
+    const { reason, retryAt } = this.#sceneTrouble ?? this.#standing;
     const seconds = Math.max(0, Math.ceil(((retryAt ?? 0) - performance.now()) / 1000));
-    const { short, title = '', text = '' } = words[state](reason, seconds);
+    const { short, title = '', text = '' } = (this.#sceneTrouble ? withoutScene : words[state])(reason, seconds);
     setText('state-text', state === 'live' && !this.#hasLight ? 'Waiting for the first light' : short);
     setText('trouble-title', title);
     setText('trouble-text', text);
