@@ -5,7 +5,7 @@
 
 layout(local_size_x = GROUP, local_size_y = GROUP) in;
 layout(binding = 0, rgba32f) uniform readonly image2D psf_irradiance;
-layout(binding = 1, rgba32f) uniform image2D bounce_irradiance;  // rgb: sum of w_k L_k; a: sum of w_k
+layout(binding = 1, rgba32f) uniform image2D bounce_irradiance;  // of its half; rgb: sum of w_k L_k; a: sum of w_k
 
 void main() {
   const ivec2 texel = ivec2(gl_GlobalInvocationID.xy);

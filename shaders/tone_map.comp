@@ -6,8 +6,9 @@
 
 layout(local_size_x = GROUP, local_size_y = GROUP) in;
 layout(binding = 0, rgba32f) uniform readonly image2D radiance;
-layout(binding = 1) readonly buffer Exposure { float average, white; };
-layout(binding = 2, rgba8) uniform writeonly image2D presented;  // sRGB-encoded; black outside charts and gutters
+layout(binding = 1, r32ui) uniform readonly uimage2D shown;  // the texel whose light to show, or NO_TEXEL
+layout(binding = 2) readonly buffer Exposure { float average, white; };
+layout(binding = 3, rgba8) uniform writeonly image2D presented;  // sRGB-encoded; black outside charts and gutters
 
 const float KEY = 0.18;  // middle grey, the operator's usual key value
 
@@ -18,10 +19,11 @@ vec3 srgb(vec3 linear) {  // IEC 61966-2-1
 void main() {
   const ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
   if (any(greaterThanEqual(texel, imageSize(radiance)))) return;
-  const vec3 colour = imageLoad(radiance, texel).rgb;
+  const uint from = imageLoad(shown, texel).r, width = uint(imageSize(radiance).x);
+  const vec3 colour = from == NO_TEXEL ? vec3(0.0) : imageLoad(radiance, ivec2(from % width, from / width)).rgb;
   const float light = luminance(colour), scale = KEY / average;
   const float scaled = light * scale, white_scaled = white * scale;
   const float mapped = scaled * (1.0 + scaled / (white_scaled * white_scaled)) / (1.0 + scaled);
-  const vec3 shown = light > 0.0 ? colour * (mapped / light) : vec3(0.0);
-  imageStore(presented, texel, vec4(srgb(clamp(shown, 0.0, 1.0)), 1.0));
+  const vec3 display = light > 0.0 ? colour * (mapped / light) : vec3(0.0);
+  imageStore(presented, texel, vec4(srgb(clamp(display, 0.0, 1.0)), 1.0));
 }

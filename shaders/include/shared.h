@@ -23,6 +23,13 @@ const uint NO_TEXEL = 0xffffffffu;
 // Gutter around the charts that is filled from their nearest texel [texels]: what bilinear filtering can reach.
 const int GUTTER = 2;
 
+// A surface so near above a receiver counts as lying or standing on it [pixels of a PSF]: a raster does not see between
+// them. Wider gaps are gaps.
+const float CONTACT = 0.125;
+
+// Distance to the nearest wall of a texel that has none.
+const float NO_WALL = -1.0;
+
 // Bins of the log-luminance histogram, over [2^LOG_LUMINANCE_MIN, 2^LOG_LUMINANCE_MAX): radiance from 1e-6 to 1e6 fits.
 // Bin 0 holds what is darker, black included.
 const uint HISTOGRAM_BINS = 1024;
@@ -45,6 +52,7 @@ struct GeometryConstants {
   vec4 offset;       // xyz: the body's shift from rest [m]
   vec4 base_colour;  // linear reflectance
   vec4 emission;     // radiance Le [W m^-2 sr^-1]
+  uint first_triangle;
 };
 
 struct EmitConstants {
@@ -58,11 +66,12 @@ struct EmitConstants {
 struct RoutingConstants {
   PsfView view;
   uint size;   // of the PSF raster [pixels]
-  uint count;  // 1: count rays and misses
+  uint count;  // 1: count rays and misses, and what lies in contact
 };
 
-struct TexelConstants {
-  uint size;  // of the atlas [texels]
+struct GutterConstants {
+  uint size;     // of the atlas [texels]
+  uint covered;  // 1: texels that other geometry lies on are filled like gutters
 };
 
 struct LayerConstants {
@@ -72,6 +81,7 @@ struct LayerConstants {
 // What a solve counts, summed over PSFs.
 struct Counters {
   uint rays, misses;                 // of texels that face the light; those that hit nothing
+  uint unknown;                      // rays without a pixel on the texel's side of all walls: left out
   uint overflow_pixels, layers_max;  // PSF pixels with more layers than asked for; most layers in one
 };
 

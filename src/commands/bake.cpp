@@ -86,16 +86,14 @@ void add_bake(CLI::App& application) {
   add_light_field_options(*command, options->settings);
   command->add_option("--spp", options->spp, "Paths a texel of --method reference, 1..1000000")
       ->capture_default_str();
-  command->add_option("--seed", options->seed, "Of --method reference: the same seed gives the same picture")
-      ->capture_default_str();
   add_device_options(*command, options->device);
   command->callback([options, command] {
     // What the other method would take is a mistake, not something to pass over in silence.
     const std::vector<std::string> of_others =
         options->method == Method::reference
-            ? std::vector<std::string>{"--psf",  "--abuffer", "--sort",    "--layers",
-                                       "--live", "--dump",    "--dump-psf"}
-            : std::vector<std::string>{"--spp", "--seed"};
+            ? std::vector<std::string>{"--psf",    "--psf-size", "--weights", "--abuffer", "--sort",
+                                       "--layers", "--live",     "--dump",    "--dump-psf"}
+            : std::vector<std::string>{"--spp"};
     for (const auto& name : of_others)
       if (command->count(name) > 0)
         throw UsageError(name + " means nothing to --method " + name_of(options->method) + "; leave it out");

@@ -19,7 +19,6 @@ struct BakeOptions {
   gpu::DeviceOptions device;
   lightfield::Settings settings;
   std::uint32_t spp = 256;  // of the reference
-  std::uint64_t seed = 0;
 };
 
 // A scene and where its movable nodes are to go, in order.

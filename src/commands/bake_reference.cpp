@@ -30,7 +30,7 @@ Baked bake_reference(const BakeOptions& options, const BakeJob& job) {
   const reference::Settings settings{.size = options.settings.size,
                                      .bounces = options.settings.bounces,
                                      .spp = options.spp,
-                                     .seed = options.seed};
+                                     .seed = options.settings.seed};
   const auto start = std::chrono::steady_clock::now();
   auto traced = reference::trace(job.scene, job.moved(), settings, [](double share, std::chrono::seconds left) {
     spdlog::info("{:3.0f} %, {} s left", 100 * share, left.count());

@@ -1,5 +1,6 @@
 #include "options.hpp"
 
+#include <cmath>
 #include <map>
 
 #include "lichtveld/lightfield/directions.hpp"
@@ -10,11 +11,14 @@ namespace {
 
 using lightfield::ABuffer;
 using lightfield::Sort;
+using lightfield::Weights;
 
 const std::map<std::string, ABuffer> abuffers = {{"stencil", ABuffer::stencil}, {"list", ABuffer::list}};
 const std::map<std::string, Method> methods = {{"thesis", Method::thesis}, {"reference", Method::reference}};
 const std::map<std::string, Sort> sorts = {
     {"bitonic", Sort::bitonic}, {"compare-swap", Sort::compare_swap}, {"scan", Sort::scan}};
+const std::map<std::string, Weights> all_weights = {{"solid-angle", Weights::solid_angle},
+                                                    {"equal", Weights::equal}};
 
 template <typename Value>
 std::string key_of(const std::map<std::string, Value>& names, Value wanted) {
@@ -40,6 +44,16 @@ void add_choice(CLI::App& command, const std::string& option, Value& value,
           help)
       ->type_name(choices)
       ->default_str(key_of(names, value));
+}
+
+// "512" pixels, or "2x" the texels of an atlas of `size`.
+std::uint32_t parse_psf_size(const std::string& text, std::uint32_t size) {
+  const bool factor = text.ends_with('x');
+  double value = 0;
+  if (!CLI::detail::lexical_cast(factor ? text.substr(0, text.size() - 1) : text, value) || !(value > 0) ||
+      !(value <= 8192))
+    throw UsageError("--psf-size " + text + ": a number of pixels from 16, or of times the atlas, as in 2x");
+  return static_cast<std::uint32_t>(std::lround(factor ? value * size : value));
 }
 
 }  // namespace
@@ -93,6 +107,21 @@ void add_quality_options(CLI::App& command, lightfield::Settings& settings) {
       ->capture_default_str();
   command.add_option("--psf", settings.psf, "Directions: " + lightfield::direction_counts_text())
       ->capture_default_str();
+  command
+      .add_option_function<std::string>(
+          "--psf-size",
+          [&settings](const std::string& text) { settings.psf_size = parse_psf_size(text, settings.size); },
+          "Pixels a side of a PSF's raster, or how many a texel of the light map has: 2x is nearly as exact as "
+          "ray casting, and takes up to four times as long")
+      ->type_name("N|Fx")
+      ->default_str("1x");
+  add_choice(
+      command, "--weights", settings.weights, all_weights,
+      "What a direction counts for: its solid angle (the thesis' correction factor), or the same for all");
+  command
+      .add_option("--seed", settings.seed,
+                  "Of all that is random: rotations and rasters of the directions, paths of the reference")
+      ->capture_default_str();
 }
 
 void add_bounces_option(CLI::App& command, lightfield::Settings& settings) {
@@ -121,6 +150,9 @@ std::string name_of(Method method) {
 }
 std::string name_of(Sort sort) {
   return key_of(sorts, sort);
+}
+std::string name_of(Weights weights) {
+  return key_of(all_weights, weights);
 }
 
 }  // namespace lichtveld::commands

@@ -31,7 +31,7 @@ void add_method_option(CLI::App& command, Method& method, const std::vector<Meth
 // --abuffer, --sort, --layers: how a light field is computed, whatever its quality.
 void add_light_field_options(CLI::App& command, lightfield::Settings& settings);
 
-// --size, --psf.
+// --size, --psf, --psf-size, --weights, --seed: what a light field's error depends on.
 void add_quality_options(CLI::App& command, lightfield::Settings& settings);
 
 // --bounces auto|N.
@@ -40,6 +40,7 @@ void add_bounces_option(CLI::App& command, lightfield::Settings& settings);
 // The last part of a name, for options whose values are words: "compare-swap".
 std::string name_of(lightfield::ABuffer abuffer);
 std::string name_of(lightfield::Sort sort);
+std::string name_of(lightfield::Weights weights);
 std::string name_of(Method method);
 
 }  // namespace lichtveld::commands

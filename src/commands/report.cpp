@@ -22,14 +22,21 @@ nlohmann::ordered_json report(const gpu::Device& device, const lightfield::Setti
           {"sort", name_of(settings.sort)},
           {"size", settings.size},
           {"psf", settings.psf},
+          {"psf_size", settings.raster()},
+          {"weights", name_of(settings.weights)},
+          {"seed", settings.seed},
           {"layers", settings.layers},
           {"bounces_used", solution.bounces},
           {"residual", solution.residual},
+          {"error_estimate", solution.error_estimate},
           {"texels_valid", solution.texels_valid},
           {"depth_layers_max", solution.depth_layers_max},
           {"overflow_pixels", solution.overflow_pixels},
           {"miss_fraction",
            solution.rays > 0 ? static_cast<double>(solution.misses) / static_cast<double>(solution.rays) : 0.0},
+          {"unknown_fraction",
+           solution.rays > 0 ? static_cast<double>(solution.rays_unknown) / static_cast<double>(solution.rays)
+                             : 0.0},
           {"time_ms", {{"total", total_ms}, {"passes", passes}}},
           {"memory_bytes", memory}};
 }

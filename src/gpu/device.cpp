@@ -60,6 +60,7 @@ std::string missing_features(const vk::raii::PhysicalDevice& physical) {
   const auto& core = features.get<vk::PhysicalDeviceFeatures2>().features;
   const auto& newer = features.get<vk::PhysicalDeviceVulkan13Features>();
   want(core.fragmentStoresAndAtomics, "fragmentStoresAndAtomics");
+  want(core.geometryShader, "geometryShader (a fragment's triangle number)");
   want(newer.dynamicRendering, "dynamicRendering");
   want(newer.synchronization2, "synchronization2");
   want(newer.maintenance4, "maintenance4");
@@ -171,7 +172,8 @@ vk::raii::Device make_device(const vk::raii::PhysicalDevice& physical, std::uint
   const float priority = 1;
   const vk::DeviceQueueCreateInfo queue{
       .queueFamilyIndex = family, .queueCount = 1, .pQueuePriorities = &priority};
-  const vk::PhysicalDeviceFeatures core{.fragmentStoresAndAtomics = true};
+  const vk::PhysicalDeviceFeatures core{.geometryShader = true,  // gl_PrimitiveID in fragment shaders
+                                        .fragmentStoresAndAtomics = true};
   const vk::PhysicalDeviceVulkan13Features newer{
       .synchronization2 = true, .dynamicRendering = true, .maintenance4 = true};
   const vk::PhysicalDeviceFeatures2 features{.pNext = const_cast<vk::PhysicalDeviceVulkan13Features*>(&newer),

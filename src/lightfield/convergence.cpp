@@ -33,4 +33,18 @@ double Convergence::measure(const gpu::Device& device, const LightMap& map) {
   return change / (1 - albedo_max_) / (sum / (3.0 * texels_valid_));
 }
 
+double split_half_error(const gpu::Device& device, const LightMap& map) {
+  const auto total = gpu::download<glm::vec4>(device, map.total_irradiance);
+  const auto difference = gpu::download<glm::vec4>(device, map.half_difference);
+  double squares = 0, sum = 0, values = 0;
+  for (std::size_t texel = 0; texel < total.size(); ++texel) {
+    if (total[texel].a == 0) continue;
+    const glm::dvec3 apart(difference[texel]), light(total[texel]);
+    squares += glm::dot(apart, apart);
+    sum += light.r + light.g + light.b;
+    values += 3;
+  }
+  return sum > 0 ? std::sqrt(squares * values) / sum : 0;
+}
+
 }  // namespace lichtveld::lightfield

@@ -26,4 +26,8 @@ class Convergence {
   float albedo_max_ = 0;
 };
 
+// Solution::error_estimate of the last bounce: the root mean square of half_difference over the mean of E, over
+// the valid texels and channels.
+double split_half_error(const gpu::Device& device, const LightMap& map);
+
 }  // namespace lichtveld::lightfield

@@ -56,21 +56,24 @@ gpu::GraphicsState set_stencil_state(const LayerStore& store, std::uint32_t samp
 
 }  // namespace
 
-shaders::PsfView psf_view(const Direction& direction, const scene::Sphere& sphere) {
+shaders::PsfView psf_view(const Direction& direction, const scene::Sphere& sphere, std::uint32_t pixels) {
   // Duff et al. 2017, "Building an Orthonormal Basis, Revisited": right x up = along.
   const glm::vec3 n = direction.along;
   const float sign = std::copysign(1.0f, n.z), a = -1 / (sign + n.z), b = n.x * n.y * a;
-  const auto row = [&](const glm::vec3& axis) {
-    return glm::vec4(axis / sphere.radius, -glm::dot(axis, sphere.centre) / sphere.radius);
+  const glm::vec3 x(1 + sign * n.x * n.x * a, sign * b, -sign * n.x), y(b, sign + n.y * n.y * a, -n.y);
+  const float cosine = std::cos(direction.roll), sine = std::sin(direction.roll);
+  const float pixel = 2.0f / static_cast<float>(pixels), scale = (1 - pixel / 2) / sphere.radius;
+  const auto row = [&](const glm::vec3& axis, float shift) {
+    return glm::vec4(axis * scale, shift - glm::dot(axis, sphere.centre) * scale);
   };
-  return {.right = row({1 + sign * n.x * n.x * a, sign * b, -sign * n.x}),
-          .up = row({b, sign + n.y * n.y * a, -n.y}),
-          .along = row(n),
+  return {.right = row(cosine * x + sine * y, direction.jitter.x * pixel),
+          .up = row(cosine * y - sine * x, direction.jitter.y * pixel),
+          .along = row(n, 0),
           .direction = glm::vec4(n, direction.solid_angle)};
 }
 
 LayerStore::LayerStore(const gpu::Device& device, const Settings& settings, std::uint32_t capacity)
-    : size(settings.size),
+    : size(settings.raster()),
       capacity(capacity),
       samples(std::min(capacity, device.summary().samples)),
       fetch(device.handle(), vk::SamplerCreateInfo{}) {
@@ -84,7 +87,7 @@ LayerStore::LayerStore(const gpu::Device& device, const Settings& settings, std:
                                std::to_string(size) + " pixels a side takes " + std::to_string(bytes >> 20) +
                                " MiB, more than the device's " +
                                std::to_string(device.summary().max_storage_buffer >> 20) +
-                               " MiB for one buffer; try a smaller --size or --abuffer stencil");
+                               " MiB for one buffer; try a smaller --psf-size or --size, or --abuffer stencil");
     layers = std::make_unique<gpu::Buffer>(device, "lightfield/layers", bytes, usage);
     filled = std::make_unique<gpu::Buffer>(device, "lightfield/layers_filled", pixels * sizeof(std::uint32_t),
                                            usage);

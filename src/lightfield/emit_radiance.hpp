@@ -17,8 +17,9 @@
 
 namespace lichtveld::lightfield {
 
-// The scene's sphere scaled to the unit sphere and seen along a direction.
-shaders::PsfView psf_view(const Direction& direction, const scene::Sphere& sphere);
+// The scene's sphere seen along a direction, with the direction's roll and jitter. It is scaled to fill the
+// unit sphere but for the half pixel that a raster of `pixels` a side may be shifted by.
+shaders::PsfView psf_view(const Direction& direction, const scene::Sphere& sphere, std::uint32_t pixels);
 
 // All surfaces along one direction, per pixel of size * size. Either kind is bound as two or one resources,
 // first in the shaders' binding order (abuffer_stencil.glsl, abuffer_list.glsl).

@@ -11,9 +11,14 @@ class GeometryTexture {
  public:
   explicit GeometryTexture(const gpu::Device& device);
   void record(gpu::Frame& frame, const Geometry& geometry, const LightMap& map) const;
+  // Writes `shown` from the charts and `cover`: like `source`, but a texel that other geometry lies on shows
+  // its nearest open one too, so that filtering does not draw its black out along that geometry's foot.
+  void find_shown(gpu::Frame& frame, const LightMap& map) const;
 
  private:
   gpu::GraphicsPipeline draw_;
+  void name_sources(gpu::Frame& frame, const LightMap& map, bool covered, const gpu::Image& sources) const;
+
   gpu::ComputePipeline gutter_;
 };
 

@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "lichtveld/scene/walls.hpp"
 #include "shared.h"
 
 namespace lichtveld::lightfield {
@@ -17,6 +18,15 @@ gpu::Image atlas_image(const gpu::Device& device, const char* name, std::uint32_
           {.width = size, .height = size},
           format,
           usage | Usage::eStorage | Usage::eTransferSrc | Usage::eTransferDst};
+}
+
+// Pixels from a texel whose walls matter: a texel looks at centres up to one pixel away, which a flat direction
+// draws out along the texel's plane; what lies beyond 8 has a cosine under 0.13 and 2 % of the light.
+constexpr float wall_reach = 8;
+
+template <typename T>
+gpu::Buffer upload_storage(const gpu::Device& device, const char* name, const std::vector<T>& contents) {
+  return gpu::upload<T>(device, name, contents, vk::BufferUsageFlagBits::eStorageBuffer);
 }
 
 constexpr auto rgba32f = vk::Format::eR32G32B32A32Sfloat;
@@ -42,9 +52,13 @@ LightMap::LightMap(const gpu::Device& device, std::uint32_t size)
       albedo(atlas_image(device, "albedo", size, rgba32f, Usage::eColorAttachment)),
       emission(atlas_image(device, "emission", size, rgba32f, Usage::eColorAttachment)),
       source(atlas_image(device, "source", size, vk::Format::eR32Uint, {})),
+      shown(atlas_image(device, "shown", size, vk::Format::eR32Uint, {})),
+      cover(atlas_image(device, "cover", size, vk::Format::eR32Sfloat, {})),
       psf_irradiance(atlas_image(device, "psf_irradiance", size, rgba32f, {})),
-      bounce_irradiance(atlas_image(device, "bounce_irradiance", size, rgba32f, {})),
+      bounce_irradiance{atlas_image(device, "bounce_irradiance 0", size, rgba32f, {}),
+                        atlas_image(device, "bounce_irradiance 1", size, rgba32f, {})},
       total_irradiance(atlas_image(device, "total_irradiance", size, rgba32f, {})),
+      half_difference(atlas_image(device, "half_difference", size, rgba32f, {})),
       radiance(atlas_image(device, "radiance", size, rgba32f, Usage::eSampled)),
       presented(atlas_image(device, "presented", size, vk::Format::eR8G8B8A8Unorm, {})) {}
 
@@ -55,22 +69,35 @@ std::vector<std::uint8_t> download_presented(const gpu::Device& device, const Li
 
 Geometry::Geometry(const gpu::Device& device, const scene::Scene& scene)
     : scene(scene),
+      sphere(scene::bounding_sphere(scene)),
       vertices(gpu::upload<scene::Vertex>(device, "scene/vertices", scene.vertices,
                                           vk::BufferUsageFlagBits::eVertexBuffer)),
       indices(gpu::upload<std::uint32_t>(device, "scene/indices", scene.indices,
                                          vk::BufferUsageFlagBits::eIndexBuffer)),
       offsets(device, "scene/offsets", scene.bodies.size() * sizeof(glm::vec4),
               vk::BufferUsageFlagBits::eStorageBuffer, gpu::Memory::host),
+      walls_first(device, "scene/walls_first", sizeof(std::uint32_t), vk::BufferUsageFlagBits::eStorageBuffer),
+      walls(device, "scene/walls", sizeof(glm::vec4), vk::BufferUsageFlagBits::eStorageBuffer),
       textures(upload_textures(device, scene)),
       sampler(device.handle(), vk::SamplerCreateInfo{.magFilter = vk::Filter::eLinear,
                                                      .minFilter = vk::Filter::eLinear,
                                                      .addressModeU = vk::SamplerAddressMode::eRepeat,
-                                                     .addressModeV = vk::SamplerAddressMode::eRepeat}) {
+                                                     .addressModeV = vk::SamplerAddressMode::eRepeat}),
+      device_(device) {
   device.name(sampler, "scene/sampler");
-  place(std::vector<glm::vec3>(scene.bodies.size(), glm::vec3(0)));
 }
 
-void Geometry::place(const std::vector<glm::vec3>& shifts) {
+void Geometry::place(const std::vector<glm::vec3>& shifts, std::uint32_t pixels) {
+  sphere = scene::bounding_sphere(scene, shifts);
+  const float pixel = 2 * sphere.radius / static_cast<float>(pixels);
+  const auto found = scene::find_walls(scene, shifts, shaders::CONTACT * pixel, wall_reach * pixel);
+  std::vector<glm::vec4> ends;
+  for (const auto& line : found.lines) {
+    ends.emplace_back(line.a, line.rises ? 1 : 0);
+    ends.emplace_back(line.b, 0);
+  }
+  walls_first = upload_storage<std::uint32_t>(device_, "scene/walls_first", found.first);
+  walls = upload_storage<glm::vec4>(device_, "scene/walls", ends);
   const auto places = offsets.as<glm::vec4>();
   for (std::size_t body = 0; body < shifts.size(); ++body) places[body] = glm::vec4(shifts[body], 0);
 }

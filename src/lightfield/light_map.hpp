@@ -1,6 +1,7 @@
 // The textures in atlas space that the passes hand to each other, and the scene's geometry on the device.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "lichtveld/gpu/transfer.hpp"
@@ -13,18 +14,21 @@ struct LightMap {
   LightMap(const gpu::Device& device, std::uint32_t size);
 
   std::uint32_t size;
-  std::uint32_t groups;          // compute workgroups a side
-  gpu::Image position;           // xyz [m]; a: 1 on valid texels
-  gpu::Image normal;             // xyz: unit shading normal
-  gpu::Image face_normal;        // xyz: unit normal of the triangle
-  gpu::Image albedo;             // rgb: 0..1
-  gpu::Image emission;           // rgb: Le [W m^-2 sr^-1]
-  gpu::Image source;             // uint: the texel whose light this one shows; gutters name their nearest
-  gpu::Image psf_irradiance;     // rgb: w_k L_k [W m^-2]; a: w_k [sr]; of one direction
-  gpu::Image bounce_irradiance;  // their sums over the directions
-  gpu::Image total_irradiance;   // rgb: E [W m^-2]; a: 1 on valid texels
-  gpu::Image radiance;           // rgb: L [W m^-2 sr^-1], gutters too; a: 1 on charts and gutters
-  gpu::Image presented;          // sRGB RGBA8: tone-mapped L
+  std::uint32_t groups;       // compute workgroups a side
+  gpu::Image position;        // xyz [m]; a: 1 on valid texels
+  gpu::Image normal;          // xyz: unit shading normal; a: distance to the nearest wall on its plane [m]
+  gpu::Image face_normal;     // xyz: unit normal of the triangle; a: the triangle's number
+  gpu::Image albedo;          // rgb: 0..1
+  gpu::Image emission;        // rgb: Le [W m^-2 sr^-1]
+  gpu::Image source;          // uint: the texel whose light this one sends; gutters name their nearest
+  gpu::Image shown;           // uint: the texel whose light players see; covered texels name theirs too
+  gpu::Image cover;           // weights [sr] of rays that start in contact with a surface, less all others
+  gpu::Image psf_irradiance;  // rgb: w_k L_k [W m^-2]; a: w_k [sr]; of one direction
+  std::array<gpu::Image, 2> bounce_irradiance;  // their sums over each half of the directions
+  gpu::Image total_irradiance;                  // rgb: E [W m^-2]; a: 1 on valid texels
+  gpu::Image half_difference;  // rgb: by how much each half of the directions differs from E [W m^-2], signed
+  gpu::Image radiance;         // rgb: L [W m^-2 sr^-1], gutters too; a: 1 on charts and gutters
+  gpu::Image presented;        // sRGB RGBA8: tone-mapped L
 };
 
 // The presented map's bytes, RGBA.
@@ -34,14 +38,21 @@ std::vector<std::uint8_t> download_presented(const gpu::Device& device, const Li
 struct Geometry {
   Geometry(const gpu::Device& device, const scene::Scene& scene);
 
-  // Shifts body i by offsets[i] [m] from rest. Not while a frame is under way.
-  void place(const std::vector<glm::vec3>& shifts);
+  // Shifts body i by shifts[i] [m] from rest and finds what stands on what, as rasters of `pixels` a side can
+  // tell. Not while a frame is under way.
+  void place(const std::vector<glm::vec3>& shifts, std::uint32_t pixels);
 
   const scene::Scene& scene;
+  scene::Sphere sphere;  // around all bodies at their places
   gpu::Buffer vertices, indices;
-  gpu::Buffer offsets;               // vec4 a body, host-visible
+  gpu::Buffer offsets;  // vec4 a body, host-visible
+  gpu::Buffer walls_first,
+      walls;  // scene::Walls: of each triangle; two vec4 a line, the first's w: 1 if it rises
   std::vector<gpu::Image> textures;  // of Scene::textures, and a white one at the end
   vk::raii::Sampler sampler;         // linear, repeating: for textures
+
+ private:
+  const gpu::Device& device_;
 };
 
 }  // namespace lichtveld::lightfield

@@ -18,10 +18,12 @@ std::vector<std::uint8_t> present(const gpu::Device& device, const scene::Scene&
   const ToneMap tone_map(device);
   const gpu::Buffer given =
       gpu::upload(device, "lightfield/given_irradiance", irradiance, vk::BufferUsageFlagBits::eTransferSrc);
-  geometry.place(offsets);
+  geometry.place(offsets, size);
   gpu::PassTimes times;
   gpu::Frame frame(device, times);
+  frame.clear("present", map.cover, {});
   geometry_texture.record(frame, geometry, map);
+  geometry_texture.find_shown(frame, map);
   frame.copy("present", given, map.total_irradiance);
   brdf.record(frame, map);
   tone_map.record(frame, map);

@@ -11,6 +11,9 @@ void check(const Settings& settings) {
   if (settings.size < 16 || settings.size > 4096)
     throw std::invalid_argument("a size of " + std::to_string(settings.size) +
                                 " texels: it must lie in 16..4096");
+  if (settings.psf_size != 0 && (settings.psf_size < 16 || settings.psf_size > 8192))
+    throw std::invalid_argument("a PSF raster of " + std::to_string(settings.psf_size) +
+                                " pixels: it must lie in 16..8192, or be 0: as fine as the atlas");
   directions(settings.psf);
   if (settings.layers < 1 || settings.layers > most_layers)
     throw std::invalid_argument(std::to_string(settings.layers) + " layers: there must be 1.." +

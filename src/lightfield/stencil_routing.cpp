@@ -20,18 +20,21 @@ std::vector<gpu::Kind> with_store(const LayerStore& store, std::initializer_list
 StencilRouting::StencilRouting(const gpu::Device& device, const LayerStore& store, Sort sort)
     : route_(device, "stencil_routing",
              store.routed ? gpu::Spirv(stencil_routing_stencil_comp) : gpu::Spirv(stencil_routing_list_comp),
-             {.kinds = with_store(store,
-                                  {gpu::Kind::storage_image, gpu::Kind::storage_image, gpu::Kind::storage_image,
-                                   gpu::Kind::storage_image, gpu::Kind::storage_buffer}),
+             {.kinds = with_store(
+                  store, {gpu::Kind::storage_image, gpu::Kind::storage_image, gpu::Kind::storage_image,
+                          gpu::Kind::storage_image, gpu::Kind::storage_image, gpu::Kind::storage_buffer,
+                          gpu::Kind::storage_buffer, gpu::Kind::storage_buffer}),
               .push_bytes = sizeof(shaders::RoutingConstants),
               .specialisation = {store.capacity, static_cast<std::uint32_t>(sort), store.samples}}) {}
 
 void StencilRouting::record(gpu::Frame& frame, const shaders::PsfView& view, const LayerStore& store,
-                            const LightMap& map, bool count, const gpu::Buffer& counters) const {
+                            const Geometry& geometry, const LightMap& map, bool count,
+                            const gpu::Buffer& counters) const {
   auto bindings = store.bindings();
   bindings.insert(bindings.end(),
                   {gpu::reads(map.position), gpu::reads(map.normal), gpu::reads(map.face_normal),
-                   gpu::writes(map.psf_irradiance), gpu::writes(counters)});
+                   gpu::writes(map.psf_irradiance), gpu::writes(map.cover), gpu::reads(geometry.walls_first),
+                   gpu::reads(geometry.walls), gpu::writes(counters)});
   frame.compute(route_, bindings,
                 shaders::RoutingConstants{.view = view, .size = store.size, .count = count ? 1u : 0u},
                 map.groups, map.groups);

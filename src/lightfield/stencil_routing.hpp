@@ -12,9 +12,9 @@ class StencilRouting {
  public:
   StencilRouting(const gpu::Device& device, const LayerStore& store, Sort sort);
 
-  // Rays and misses are counted into `counters` if `count` is set.
-  void record(gpu::Frame& frame, const shaders::PsfView& view, const LayerStore& store, const LightMap& map,
-              bool count, const gpu::Buffer& counters) const;
+  // If `count` is set, rays and misses are counted into `counters`, and what lies in contact into `cover`.
+  void record(gpu::Frame& frame, const shaders::PsfView& view, const LayerStore& store,
+              const Geometry& geometry, const LightMap& map, bool count, const gpu::Buffer& counters) const;
 
  private:
   gpu::ComputePipeline route_;

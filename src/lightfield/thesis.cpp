@@ -26,9 +26,10 @@ constexpr double converged = 1e-3;
 
 void check_on(const gpu::Device& device, const Settings& settings) {
   check(settings);
-  if (settings.size > device.summary().max_image_size)
-    throw std::invalid_argument("a size of " + std::to_string(settings.size) +
-                                " texels: " + device.summary().name + " can do " +
+  const auto largest = std::max(settings.size, settings.raster());
+  if (largest > device.summary().max_image_size)
+    throw std::invalid_argument("a size of " + std::to_string(largest) +
+                                " texels or pixels: " + device.summary().name + " can do " +
                                 std::to_string(device.summary().max_image_size) + " at most");
 }
 
@@ -57,7 +58,7 @@ struct Thesis::Parts {
   Parts(const gpu::Device& device, const scene::Scene& scene, const Settings& settings)
       : device(device),
         settings(settings),
-        psfs(directions(settings.psf)),
+        psfs(directions(settings.psf, settings.weights, settings.seed)),
         geometry(device, scene),
         map(device, settings.size),
         layered(std::make_unique<Layered>(device, settings, capacity_for(settings.layers, settings, device))),
@@ -81,11 +82,14 @@ struct Thesis::Parts {
   Brdf brdf;
   ToneMap tone_map;
   gpu::Buffer counters;
-  scene::Sphere sphere;
 
+  shaders::PsfView view(std::size_t psf) const {
+    return psf_view(psfs[psf], geometry.sphere, layered->store.size);
+  }
   void begin(const std::vector<glm::vec3>& offsets);
   void render_bounce(bool count, Solution& solution, const StageObserver& observer, std::uint32_t observed);
   void render_psfs(std::size_t first, std::size_t end, bool count, Solution& solution);
+  void clear_bounce(gpu::Frame& frame);
   void end_bounce();
   void present();
   bool widen(const Solution& solution);
@@ -118,6 +122,7 @@ Solution Thesis::solve(const std::vector<glm::vec3>& offsets, const StageObserve
     ++solution.bounces;
     solution.residual = convergence.measure(parts.device, parts.map);
   }
+  solution.error_estimate = split_half_error(parts.device, parts.map);
   parts.present();  // tone_map
   if (observer) parts.show_result(observer);
   return solution;
@@ -144,11 +149,10 @@ bool Thesis::Parts::done(const Solution& solution) const {
 }
 
 void Thesis::Parts::begin(const std::vector<glm::vec3>& offsets) {
-  geometry.place(offsets);
-  sphere = scene::bounding_sphere(geometry.scene, offsets);
+  geometry.place(offsets, settings.raster());
   gpu::Frame frame(device, times);
   frame.clear("blend", map.total_irradiance, {});
-  frame.clear("blend", map.bounce_irradiance, {});
+  clear_bounce(frame);
   geometry_texture.record(frame, geometry, map);
   brdf.record(frame, map);
   frame.submit_and_wait();
@@ -156,7 +160,7 @@ void Thesis::Parts::begin(const std::vector<glm::vec3>& offsets) {
 
 void Thesis::Parts::render_bounce(bool count, Solution& solution, const StageObserver& observer,
                                   std::uint32_t observed) {
-  if (count) solution.overflow_pixels = solution.rays = solution.misses = 0;
+  if (count) solution.overflow_pixels = solution.rays = solution.misses = solution.rays_unknown = 0;
   const bool observing = count && observer && observed < psfs.size();
   for (std::size_t first = 0; first < psfs.size();) {
     std::size_t end = std::min(first + psfs_a_frame, psfs.size());
@@ -169,18 +173,19 @@ void Thesis::Parts::render_bounce(bool count, Solution& solution, const StageObs
 
 void Thesis::Parts::render_psfs(std::size_t first, std::size_t end, bool count, Solution& solution) {
   auto& counted = counters.as<shaders::Counters>().front();
-  counted = {.rays = 0, .misses = 0, .overflow_pixels = 0, .layers_max = solution.depth_layers_max};
+  counted = {
+      .rays = 0, .misses = 0, .unknown = 0, .overflow_pixels = 0, .layers_max = solution.depth_layers_max};
   gpu::Frame frame(device, times);
   for (std::size_t psf = first; psf < end; ++psf) {
-    const auto view = psf_view(psfs[psf], sphere);
-    layered->emit.record(frame, view, geometry, map, layered->store, settings.layers, count, counters);
-    layered->route.record(frame, view, layered->store, map, count, counters);
-    blend.psf_into_bounce(frame, map);
+    layered->emit.record(frame, view(psf), geometry, map, layered->store, settings.layers, count, counters);
+    layered->route.record(frame, view(psf), layered->store, geometry, map, count, counters);
+    blend.psf_into_bounce(frame, map, psfs[psf].half);
   }
   frame.to_host(counters);
   frame.submit_and_wait();
   solution.rays += counted.rays;
   solution.misses += counted.misses;
+  solution.rays_unknown += counted.unknown;
   solution.overflow_pixels += counted.overflow_pixels;
   solution.depth_layers_max = counted.layers_max;
 }
@@ -198,9 +203,14 @@ bool Thesis::Parts::widen(const Solution& solution) {
   layered.reset();  // first, so that both need not fit
   layered = std::make_unique<Layered>(device, settings, capacity_for(needed, settings, device));
   gpu::Frame frame(device, times);
-  frame.clear("blend", map.bounce_irradiance, {});
+  clear_bounce(frame);
   frame.submit_and_wait();
   return true;
+}
+
+void Thesis::Parts::clear_bounce(gpu::Frame& frame) {
+  for (const auto& half : map.bounce_irradiance) frame.clear("blend", half, {});
+  frame.clear("stencil_routing", map.cover, {});
 }
 
 void Thesis::Parts::end_bounce() {
@@ -212,13 +222,15 @@ void Thesis::Parts::end_bounce() {
 
 void Thesis::Parts::present() {
   gpu::Frame frame(device, times);
+  geometry_texture.find_shown(frame, map);
   tone_map.record(frame, map);
   frame.submit_and_wait();
 }
 
 void Thesis::Parts::show_stages(const StageObserver& observer) {
   for (std::uint32_t layer = 0; layer < layered->store.capacity; ++layer) {
-    const gpu::Image shown(device, "lightfield/shown_layer", {.width = settings.size, .height = settings.size},
+    const gpu::Image shown(device, "lightfield/shown_layer",
+                           {.width = layered->store.size, .height = layered->store.size},
                            vk::Format::eR32G32B32A32Sfloat,
                            vk::ImageUsageFlagBits::eStorage | vk::ImageUsageFlagBits::eTransferSrc);
     gpu::Frame frame(device, times);

@@ -63,18 +63,23 @@ TEST(Directions, OtherCountsAreRefusedWithTheList) {
   }
 }
 
-TEST(PsfView, IsOrthonormalAndScalesTheSphereToTheUnitSphere) {
+TEST(PsfView, IsOrthonormalAndFitsTheSphereWhateverTheJitter) {
   const scene::Sphere sphere{{3, -2, 5}, 4};
+  constexpr std::uint32_t pixels = 64;
+  const float length = (1 - 1.0f / pixels) / sphere.radius;  // room for the jitter of half a pixel
   for (const auto& direction : directions(96)) {
-    const auto view = psf_view(direction, sphere);
-    const glm::vec3 right = glm::vec3(view.right) * sphere.radius, up = glm::vec3(view.up) * sphere.radius,
-                    along = glm::vec3(view.along) * sphere.radius;
+    const auto view = psf_view(direction, sphere, pixels);
+    const glm::vec3 right = glm::vec3(view.right) / length, up = glm::vec3(view.up) / length,
+                    along = glm::vec3(view.along) / length;
     EXPECT_LT(glm::distance(along, direction.along), 1e-6);
     EXPECT_LT(glm::distance(glm::cross(right, up), along), 1e-5);
     EXPECT_NEAR(glm::dot(view.along, glm::vec4(sphere.centre, 1)), 0, 1e-6);
-    const glm::vec3 rim = sphere.centre + sphere.radius * right;
-    EXPECT_NEAR(glm::dot(view.right, glm::vec4(rim, 1)), 1, 1e-6);
-    EXPECT_NEAR(glm::dot(view.up, glm::vec4(rim, 1)), 0, 1e-6);
+    for (const float side : {-1.0f, 1.0f})
+      for (const auto& [row, axis] : {std::pair{view.right, right}, std::pair{view.up, up}})
+        EXPECT_LE(std::abs(glm::dot(row, glm::vec4(sphere.centre + side * sphere.radius * axis, 1))), 1 + 1e-6);
+    const glm::vec2 shift(glm::dot(view.right, glm::vec4(sphere.centre, 1)),
+                          glm::dot(view.up, glm::vec4(sphere.centre, 1)));
+    EXPECT_LT(glm::distance(shift, direction.jitter * (2.0f / pixels)), 1e-6);
   }
 }
 

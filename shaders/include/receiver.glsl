@@ -1,0 +1,60 @@
+// A texel as a receiver of one PSF's light: its plane in PSF coordinates, what stands on it, how far its chart reaches.
+// Included by a shader that has the image `position` (xyz [m]; a: 1 on valid texels), `walls_first` and `walls`.
+
+// Layers are sampled at pixel centres, so the receiver's depth is taken there too: where the ray through the centre
+// meets the receiver's plane. Shifts in PSF coordinates; `slope` is the plane's change of depth along right and up.
+float receiver_depth(vec2 shift, float depth, vec2 slope) { return depth + dot(shift, slope); }
+
+// What the rasteriser may be off by: vertices are snapped to 1/256 pixel (Vulkan's usual subPixelPrecisionBits), which
+// moves a plane's depth by as much of its slope; and rounding of 32-bit depths.
+const float SUBPIXEL = 1.0 / 256.0;
+const float ROUNDING = 1e-5;
+float receiver_tolerance(vec2 slope, float pixel) { return SUBPIXEL * pixel * (abs(slope.x) + abs(slope.y)) + ROUNDING; }
+
+// The step from a texel to its neighbour in x or y on the same chart [m]; zero if it has none there.
+vec3 texel_step(ivec2 texel, vec3 p, ivec2 by) {
+  const ivec2 after = min(texel + by, imageSize(position) - 1), before = max(texel - by, ivec2(0));
+  const vec4 next = imageLoad(position, after), last = imageLoad(position, before);
+  if (next.a > 0.0 && after != texel) return next.xyz - p;
+  return last.a > 0.0 && before != texel ? p - last.xyz : vec3(0.0);
+}
+
+// Whether the chart of the texel at p surely still is there `away` from it, a vector in its plane [m]: between centres of
+// valid texels that lie where they should.
+bool chart_reaches(ivec2 texel, vec3 p, vec3 away) {
+  const vec3 x = texel_step(texel, p, ivec2(1, 0)), y = texel_step(texel, p, ivec2(0, 1));
+  const float xx = dot(x, x), xy = dot(x, y), yy = dot(y, y), determinant = xx * yy - xy * xy;
+  if (determinant <= 1e-6 * xx * yy) return false;
+  const vec2 along = vec2(dot(x, away), dot(y, away));
+  const vec2 texels = vec2(yy * along.x - xy * along.y, xx * along.y - xy * along.x) / determinant;
+  const vec2 at = floor(vec2(texel) + texels), last = vec2(imageSize(position) - 1);
+  if (any(lessThan(at, vec2(0.0))) || any(greaterThanEqual(at, last))) return false;
+  for (int corner = 0; corner < 4; ++corner) {
+    const vec4 there = imageLoad(position, ivec2(at) + ivec2(corner & 1, corner >> 1));
+    if (there.a == 0.0 || distance(there.xyz, p + away) > sqrt(xx) + sqrt(yy)) return false;
+  }
+  return true;
+}
+
+// Whether a surface leaves the receiver's plane between p and the place `away` from it: one that rises from it, or any.
+// Within `margin` of a wall [m] the rasteriser may have put a centre on either side.
+bool wall_between(uint triangle, vec3 p, vec3 away, vec3 face, float margin, bool rising_only) {
+  for (uint wall = walls_first[triangle]; wall < walls_first[triangle + 1u]; ++wall) {
+    if (rising_only && walls[2u * wall].w == 0.0) continue;
+    const vec3 a = walls[2u * wall].xyz, edge = walls[2u * wall + 1u].xyz - a;
+    const float width = length(edge);
+    if (width == 0.0) continue;
+    const vec3 along = edge / width, across = cross(face, along);
+    float here = dot(p - a, across), there = here + dot(away, across);
+    if (here < 0.0) {
+      here = -here;
+      there = -there;
+    }
+    const float near = min(margin, 0.5 * here);
+    if (there > near) continue;
+    const float share = there < here ? clamp(here / max(here - there, 1e-30), 0.0, 1.0) : 1.0;
+    const float place = dot(p + share * away - a, along);
+    if (place >= -margin && place <= width + margin) return true;
+  }
+  return false;
+}
