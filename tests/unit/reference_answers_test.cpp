@@ -1,7 +1,9 @@
 // --method reference against exact answers.
 #include <gtest/gtest.h>
 
+#include "form_factors.hpp"
 #include "reference_scenes.hpp"
+#include "shapes.hpp"
 
 namespace lichtveld::reference {
 namespace {
@@ -45,9 +47,7 @@ TEST(ReferenceAnswers, WhiteFurnaceEnds) {
   EXPECT_GT(baked.mean(whole_atlas).value, 10 * pi);
 }
 
-// Form factors between unit squares: parallel at distance 1, 0.199825; perpendicular with a common edge,
-// 0.200044 (Howell, A Catalog of Radiation Heat Transfer Configuration Factors, C-11 and C-14). E = pi * F *
-// Le.
+// E = pi * F * Le.
 TEST(ReferenceAnswers, ParallelSquaresHaveTheirFormFactor) {
   SceneBuilder builder;
   square(builder, "lamp", 2, true, chart_a, builder.material(glm::vec3(0), glm::vec3(10)));
@@ -55,7 +55,8 @@ TEST(ReferenceAnswers, ParallelSquaresHaveTheirFormFactor) {
   const auto baked = traced(loaded(builder), {.size = 64, .bounces = 1, .spp = 256});
   const auto mean = baked.mean(chart_b);
   EXPECT_LT(mean.standard_error, 0.0005 * mean.value);
-  EXPECT_NEAR(mean.value / (10 * pi * 0.199825), 1, 0.002);  // and the midpoint rule over 24 x 24 texels
+  EXPECT_NEAR(mean.value / (10 * pi * parallel_squares), 1,
+              0.002);  // and the midpoint rule over 24 x 24 texels
   EXPECT_EQ(baked.mean(chart_a).value, 0);
   EXPECT_GT(baked.light.misses, baked.light.rays / 2) << "an open scene";
 }
@@ -68,15 +69,8 @@ TEST(ReferenceAnswers, PerpendicularSquaresHaveTheirFormFactor) {
   const auto baked = traced(loaded(builder), {.size = 64, .bounces = 1, .spp = 1024});
   const auto mean = baked.mean(chart_b);
   EXPECT_LT(mean.standard_error, 0.001 * mean.value);
-  EXPECT_NEAR(mean.value / (10 * pi * 0.200044), 1,
+  EXPECT_NEAR(mean.value / (10 * pi * perpendicular_squares), 1,
               0.004);  // E is steep near the edge: the midpoint rule again
-}
-
-// From a point to a parallel rectangle whose corner lies on the point's normal (Howell, B-3), sides a and b at
-// distance c, signed.
-double corner_factor(double a, double b, double c) {
-  const double x = a / c, y = b / c, p = std::sqrt(1 + x * x), q = std::sqrt(1 + y * y);
-  return (x / p * std::atan(y / p) + y / q * std::atan(x / q)) / (2 * pi);
 }
 
 // A lamp 20 cm wide, 2 m above a floor: the exact answer of each texel, and whether its standard error explains
@@ -88,9 +82,7 @@ TEST(ReferenceAnswers, ASmallLampIsExactAtEachTexelAndErrorsAreHonest) {
   const auto exact = [&](float u, float v) {
     const double x = 2 * (u - chart_b.u0) / (chart_b.u1 - chart_b.u0) - 1,
                  z = 2 * (v - chart_b.v0) / (chart_b.v1 - chart_b.v0) - 1, h = 0.1;
-    return 100 * pi *
-           (corner_factor(h - x, h - z, 2) - corner_factor(-h - x, h - z, 2) - corner_factor(h - x, -h - z, 2) +
-            corner_factor(-h - x, -h - z, 2));
+    return 100 * pi * rectangle_factor(x, z, h, h, 2);
   };
   const auto baked = traced(loaded(builder), {.size = 64, .bounces = 1, .spp = 256});
   double worst = 0;
@@ -103,21 +95,10 @@ TEST(ReferenceAnswers, ASmallLampIsExactAtEachTexelAndErrorsAreHonest) {
   EXPECT_LT(deviations, 1.6);
 }
 
-// The same with a disc: E = pi * Le * r^2 / (r^2 + h^2) on its axis (Howell, B-12), 1000 corners standing for
-// round.
+// The same with a disc: E = pi * Le * r^2 / (r^2 + h^2) on its axis (Howell, B-12).
 TEST(ReferenceAnswers, ADiscOnItsAxis) {
   SceneBuilder builder;
-  constexpr int corners = 1000;
-  std::vector<glm::vec3> positions{{0, 1, 0}};
-  std::vector<glm::vec2> atlas{{0.25f, 0.25f}};
-  std::vector<std::uint16_t> indices;
-  for (int k = 0; k < corners; ++k) {
-    const auto angle = static_cast<float>(2 * pi * k / corners);
-    positions.emplace_back(0.5f * std::cos(angle), 1, 0.5f * std::sin(angle));
-    atlas.emplace_back(0.25f + 0.2f * std::cos(angle), 0.25f + 0.2f * std::sin(angle));
-    for (const int i : {0, 1 + k, 1 + (k + 1) % corners}) indices.push_back(static_cast<std::uint16_t>(i));
-  }
-  builder.mesh("disc", positions, atlas, indices, builder.material(glm::vec3(0), glm::vec3(10)));
+  disc(builder, "disc", {0, 1, 0}, 0.5f, chart_a, builder.material(glm::vec3(0), glm::vec3(10)));
   square(builder, "floor", 0, false, chart_b, builder.material(glm::vec3(0.5)), 1e-3f);
   const auto mean = traced(loaded(builder), {.size = 32, .bounces = 1, .spp = 4096}).mean(chart_b);
   EXPECT_NEAR(mean.value / (10 * pi * 0.25 / 1.25), 1, 0.001);

@@ -5,6 +5,7 @@
 
 #include <stdexcept>
 
+#include "form_factors.hpp"
 #include "reference_scenes.hpp"
 
 namespace lichtveld::reference {
@@ -12,8 +13,6 @@ namespace {
 
 using namespace lichtveld::testing;
 using ::testing::HasSubstr;
-
-constexpr double parallel_squares = 0.199825;  // form factor, at a distance of their side
 
 TEST(ReferenceRules, OneSidedSurfacesAreSeenFromTheirFrontAlone) {
   for (const bool double_sided : {false, true}) {

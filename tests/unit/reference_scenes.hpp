@@ -1,42 +1,12 @@
-// Scenes for the reference whose answers are known, and what a trace says about them.
+// What a trace by the reference says about a scene whose answer is known.
 #pragma once
 
 #include <cmath>
-#include <numbers>
 
+#include "known_scenes.hpp"
 #include "lichtveld/reference/path_tracer.hpp"
-#include "scene_builder.hpp"
 
 namespace lichtveld::testing {
-
-constexpr double pi = std::numbers::pi;
-
-inline scene::Scene loaded(const SceneBuilder& builder) {
-  const TempFolder folder;
-  return scene::load(folder.write("scene.glb", builder.glb()));
-}
-
-// A closed box [-1, 1]^3 whose walls all emit `emission` and reflect `albedo`.
-inline scene::Scene furnace(float albedo, float emission = 1) {
-  SceneBuilder builder;
-  builder.box("room", glm::vec3(-1), glm::vec3(1), {0, 0, 1, 1},
-              builder.material(glm::vec3(albedo), glm::vec3(emission)), true);
-  return loaded(builder);
-}
-
-// A horizontal square of side 2 * `half` about (x, y, 0).
-inline int square(SceneBuilder& builder, const char* name, float y, bool down, Chart chart, int material,
-                  float half = 1, float x = 0) {
-  const float l = x - half, r = x + half, h = half;
-  if (down) return builder.quad(name, {glm::vec3(l, y, -h), {r, y, -h}, {r, y, h}, {l, y, h}}, chart, material);
-  return builder.quad(name, {glm::vec3(l, y, h), {r, y, h}, {r, y, -h}, {l, y, -h}}, chart, material);
-}
-
-// Charts whose edges lie between texels at sizes that 16 divides: the mean over texels is the midpoint rule.
-constexpr Chart chart_a{1.f / 16, 1.f / 16, 7.f / 16, 7.f / 16},
-    chart_b{9.f / 16, 1.f / 16, 15.f / 16, 7.f / 16}, chart_c{1.f / 16, 9.f / 16, 7.f / 16, 15.f / 16},
-    chart_d{9.f / 16, 9.f / 16, 15.f / 16, 15.f / 16};
-constexpr Chart whole_atlas{0, 0, 1, 1};
 
 struct Traced {
   reference::Irradiance light;
