@@ -17,10 +17,11 @@ Case dark_room(const std::string& name, double pixels) {
   const std::string
       reason = "exactly 0: a sum of zeros has no rounding.",
       why =
-          "a texel within a pixel of the wall is looked up in a pixel whose centre lies inside the wall, "
-          "or past it. A wall has no faces inside it, and those it has are one-sided, so that the bright "
-          "room is in sight from there. More pixels (`--psf-size`, `--size`) leave fewer texels so close "
-          "to a wall.";
+          "a texel at the foot of the wall is looked up in a PSF pixel whose centre may lie inside the "
+          "wall, or past it. A wall has no faces inside it, and those it has are one-sided, so that the "
+          "bright room is in sight from there. It happens to texels within a pixel of the wall, in "
+          "grazing directions within three, whatever the wall's thickness; reflection then spreads the "
+          "light. More pixels (`--psf-size`, `--size`) make that strip narrower.";
   return {
       .name = name,
       .formula =
@@ -109,9 +110,11 @@ Case plates() {
            "1 %: a layer that is lost shows as another plate's radiance, 20 % off at least. What few "
            "directions miss at the plates' rims is less, since these are 9 gaps "
            "away. The reference's noise is taken off.",
-           "stencil routing counts layers sample by sample. Where the rim of any plate in the stack crosses a "
-           "pixel, some of its samples count one layer less, and the layer between is in none or in two. The "
-           "list holds up to 32 plates, and beyond the 8 layers it starts with."}}};
+           "stencil routing counts layers sample by sample. Where the rim of a plate higher up crosses a "
+           "pixel, some "
+           "of its samples count one layer less, and a layer between is in none of them or in two. That takes "
+           "a stack as high as the seventh plate, since lower rims are out of sight of the middle; it is no "
+           "limit of layers. The list holds all 32."}}};
 }
 
 // A floor with a box that goes through it, under a lamp. The texels in the box are asked.

@@ -29,7 +29,7 @@ std::string with_error(const Row& row, Method method) {
 }
 
 std::string percent_or_absolute(const Row& row, double tolerance) {
-  return row.figure.expected == 0 ? number(tolerance, "%.2g") : number(100 * tolerance, "%.2g") + " %";
+  return row.figure.expected == 0 ? number(tolerance, "%.3g") : number(100 * tolerance, "%.3g") + " %";
 }
 
 std::string tolerances(const Row& row) {
