@@ -14,14 +14,11 @@ constexpr float le = 10;  // of the lamps [W m^-2 sr^-1]
 
 constexpr const char* many_texels =
     "2 %: of N = 153 directions that hit the lamp its outline leaves 2 N^-3/4 = 4.6 % to chance in one texel, "
-    "and the "
-    "mean over 24 x 24 texels less than half of that; the midpoint rule over them is 0.2 % off.";
+    "and the mean over 24 x 24 texels less than half of that; the midpoint rule over them is 0.2 % off.";
 constexpr const char* against_the_void =
     "where a texel's PSF pixel is empty its neighbours are asked, so that silhouettes against the void are up "
-    "to half "
-    "a pixel wide of the mark: of 37 pixels across. In a closed room no pixel is empty. More pixels: "
-    "`--psf-size`, "
-    "`--size`; or close the scene.";
+    "to half a pixel wide of the mark: of 37 pixels across. In a closed room no pixel is empty. More pixels: "
+    "`--psf-size`, `--size`; or close the scene.";
 
 // A lamp that the floor (y = 0, side 2 * floor_half) sees. The rest of the scene is `surroundings`.
 Case factor(const std::string& name, const std::string& formula, double exact,
@@ -84,8 +81,7 @@ std::vector<Case> factor_cases() {
           [](SceneBuilder& builder, int lamp) { disc(builder, "lamp", {0, 1, 0}, 0.5f, chart_a, lamp); },
           [](SceneBuilder& builder) { black_room(builder); }, {{{round}, {round}, {0.002}}},
           "the floor is a point, 2 mm wide: nothing averages what the outline leaves to chance, 2 N^-3/4 of N "
-          "= 154 "
-          "directions.",
+          "= 154 directions.",
           1e-3f),
       factor(
           "narrow_gap", "Squares of side 2 at 2 cm, which is half a pixel: F by Howell, B-3, over the floor.",

@@ -13,10 +13,8 @@ constexpr float le = 10;  // [W m^-2 sr^-1]
 
 constexpr const char* few_directions =
     "a lamp is seen by the directions that hit it: one that is narrower than the gap between them lights some "
-    "texels "
-    "too much and others not at all, and one that is narrower than a PSF's pixel is missed by most of its "
-    "rays. More "
-    "`--psf`; more `--size`, for the pixels.";
+    "texels too much and others not at all, and one that is narrower than a PSF's pixel is missed by most of "
+    "its rays. More `--psf`; more `--size`, for the pixels.";
 constexpr const char* cornell =
     "5 %, what the Cornell room has at these PSFs (docs/algorithm.md, Accuracy). The reference's noise is "
     "taken off.";
@@ -57,11 +55,10 @@ Case shrinking_lamp(const std::string& name, float half, std::array<Limit, 3> me
           .psf = psfs,
           .bounces = 1,
           .spp = 256,
-          .figures =
-              of_the_floor(exact, mean_limits, rmse_limits,
-                           "what E's mean over the floor misses is which directions lead from the lamp to the "
-                           "floor: about N = 38, whose outline leaves 2 N^-3/4 = 13 % to chance.",
-                           few_directions)};
+          .figures = of_the_floor(exact, mean_limits, rmse_limits,
+                                  "what E's mean over the floor misses is which directions lead from the lamp "
+                                  "to the floor: about N = 38, whose outline leaves 2 N^-3/4 = 13 % to chance.",
+                                  few_directions)};
 }
 
 // A black roof with a slit 4 m long and `pixels` PSF pixels wide, right under a sky that glows. The floor sees
@@ -105,8 +102,8 @@ Case slit(const std::string& name, double pixels, std::array<Limit, 3> mean_limi
           .spp = 256,
           .figures = of_the_floor(
               exact, mean_limits, rmse_limits,
-              "as the lamps, with N = 77 directions from the slit to the floor: 8 %. The reference finds "
-              "the sky through the slit by chance, which leaves it 1 % of noise at a quarter pixel.",
+              "as the lamps, with N = 77 directions from the slit to the floor: 8 %. The reference finds the "
+              "sky through the slit by chance, which leaves it 1 % of noise at a quarter pixel.",
               few_directions)};
 }
 

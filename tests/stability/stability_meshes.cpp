@@ -38,38 +38,37 @@ Case odd_squares(const std::string& name, const std::string& formula,
 
 // A lid on the floor, face to face with it.
 Case contact() {
-  return {
-      .name = "faces_in_contact",
-      .formula = "A lid that lies on the floor hides it from the lamp: 0.",
-      .scenes =
-          [=] {
-            SceneBuilder builder;
-            square(builder, "lamp", 2, true, chart_a, builder.material(glm::vec3(0), glm::vec3(le)));
-            square(builder, "floor", 0, false, chart_b, builder.material(glm::vec3(0.5f)));
-            square(builder, "lid", 0, true, chart_c, builder.material(glm::vec3(0.5f)));
-            return std::vector{loaded(builder)};
-          },
-      .size = 64,
-      .psf = 384,
-      .bounces = 2,
-      .spp = 64,
-      .figures = {
-          {"brightest covered texel, as a share",
-           0,
-           [](const Texels& map) {
-             constexpr double inner = 1 - 2 * 2 * 1.7320508 / 64;  // two PSF pixels off the rim
-             return most(where(map,
-                               [](const Texel& texel) {
-                                 return texel.node == "floor" && std::abs(texel.position.x) < inner &&
-                                        std::abs(texel.position.z) < inner;
-                               })) /
-                    (pi * le);
-           },
-           {{{0, 0.06}, {0}, {0}}},
-           "exactly 0: equal depths count as in front.",
-           "where the lamp's outline crosses a pixel, some of its samples count one layer less, so that the "
-           "lid is the second layer of some samples, the first of others, and kept in none. The list does "
-           "not lose it."}}};
+  return {.name = "faces_in_contact",
+          .formula = "A lid that lies on the floor hides it from the lamp: 0.",
+          .scenes =
+              [=] {
+                SceneBuilder builder;
+                square(builder, "lamp", 2, true, chart_a, builder.material(glm::vec3(0), glm::vec3(le)));
+                square(builder, "floor", 0, false, chart_b, builder.material(glm::vec3(0.5f)));
+                square(builder, "lid", 0, true, chart_c, builder.material(glm::vec3(0.5f)));
+                return std::vector{loaded(builder)};
+              },
+          .size = 64,
+          .psf = 384,
+          .bounces = 2,
+          .spp = 64,
+          .figures = {{"brightest covered texel, as a share",
+                       0,
+                       [](const Texels& map) {
+                         constexpr double inner = 1 - 2 * 2 * 1.7320508 / 64;  // two PSF pixels off the rim
+                         return most(where(map,
+                                           [](const Texel& texel) {
+                                             return texel.node == "floor" &&
+                                                    std::abs(texel.position.x) < inner &&
+                                                    std::abs(texel.position.z) < inner;
+                                           })) /
+                                (pi * le);
+                       },
+                       {{{0, 0.06}, {0}, {0}}},
+                       "exactly 0: equal depths count as in front.",
+                       "where the lamp's outline crosses a pixel, some of its samples count one layer less, so "
+                       "that the lid is the second layer of some samples, the first of others, and kept in "
+                       "none. The list does not lose it."}}};
 }
 
 // A lit floor, and far above it a dark ceiling over a floor of its own. Lamp and dark ceiling touch in the
@@ -93,14 +92,13 @@ Case touching_charts() {
       .psf = 384,
       .bounces = 1,
       .spp = 64,
-      .figures = {
-          {"mean of the dark floor over the lit one",
-           0,
-           [](const Texels& map) { return mean(of(map, "dark floor")) / mean(of(map, "floor")); },
-           {{{0, 0.03}, {0, 0.02}, {0}}},
-           "exactly 0: nothing that glows faces the dark floor.",
-           "a surface's radiance is read from the map with bilinear filtering, which takes in half a texel of "
-           "the neighbouring chart. Unwrap with gutters of two texels."}}};
+      .figures = {{"mean of the dark floor over the lit one",
+                   0,
+                   [](const Texels& map) { return mean(of(map, "dark floor")) / mean(of(map, "floor")); },
+                   {{{0, 0.03}, {0, 0.02}, {0}}},
+                   "exactly 0: nothing that glows faces the dark floor.",
+                   "a surface's radiance is read from the map with bilinear filtering, which takes in half a "
+                   "texel of the neighbouring chart. Unwrap with gutters of two texels."}}};
 }
 
 }  // namespace

@@ -17,41 +17,40 @@ Case dark_room(const std::string& name, double pixels) {
   const std::string
       reason = "exactly 0: a sum of zeros has no rounding.",
       why =
-          "a texel at the foot of the wall is looked up in a PSF pixel whose centre may lie inside the "
-          "wall, or past it. A wall has no faces inside it, and those it has are one-sided, so that the "
-          "bright room is in sight from there. It happens to texels within a pixel of the wall, in "
-          "grazing directions within three, whatever the wall's thickness; reflection then spreads the "
-          "light. More pixels (`--psf-size`, `--size`) make that strip narrower.";
-  return {
-      .name = name,
-      .formula =
-          "A closed room without a lamp beside a bright one: nothing gets through a wall, however thin. The "
-          "shares are of the bright room's mean.",
-      .scenes =
-          [=] {
-            SceneBuilder builder;
-            builder.box("bright", {-2 - half, -1, -1}, {-half, 1, 1}, {0, 0, 1, 0.5f},
-                        builder.material(glm::vec3(0.5f), glm::vec3(1)), true);
-            builder.box("dark", {half, -1, -1}, {2 + half, 1, 1}, {0, 0.5f, 1, 1},
-                        builder.material(glm::vec3(0.8f)), true);
-            return std::vector{loaded(builder)};
-          },
-      .size = size,
-      .psf = 96,
-      .bounces = 3,
-      .spp = 64,
-      .figures = {{"mean of the dark room, as a share",
-                   0,
-                   [](const Texels& map) { return mean(of(map, "dark")) / mean(of(map, "bright")); },
-                   {{{0, 0.04}, {0, 0.012}, {0}}},
-                   reason,
-                   why},
-                  {"brightest dark texel, as a share",
-                   0,
-                   [](const Texels& map) { return most(of(map, "dark")) / mean(of(map, "bright")); },
-                   {{{0, 0.5}, {0, 0.5}, {0}}},
-                   reason,
-                   why}}};
+          "a texel at the foot of the wall is looked up in a PSF pixel whose centre may lie inside the wall, "
+          "or past it. A wall has no faces inside it, and those it has are one-sided, so that the bright room "
+          "is in sight from there. It happens to texels within a pixel of the wall, in grazing directions "
+          "within three, whatever the wall's thickness; reflection then spreads the light. More pixels "
+          "(`--psf-size`, `--size`) make that strip narrower.";
+  return {.name = name,
+          .formula =
+              "A closed room without a lamp beside a bright one: nothing gets through a wall, however thin. "
+              "The shares are of the bright room's mean.",
+          .scenes =
+              [=] {
+                SceneBuilder builder;
+                builder.box("bright", {-2 - half, -1, -1}, {-half, 1, 1}, {0, 0, 1, 0.5f},
+                            builder.material(glm::vec3(0.5f), glm::vec3(1)), true);
+                builder.box("dark", {half, -1, -1}, {2 + half, 1, 1}, {0, 0.5f, 1, 1},
+                            builder.material(glm::vec3(0.8f)), true);
+                return std::vector{loaded(builder)};
+              },
+          .size = size,
+          .psf = 96,
+          .bounces = 3,
+          .spp = 64,
+          .figures = {{"mean of the dark room, as a share",
+                       0,
+                       [](const Texels& map) { return mean(of(map, "dark")) / mean(of(map, "bright")); },
+                       {{{0, 0.04}, {0, 0.012}, {0}}},
+                       reason,
+                       why},
+                      {"brightest dark texel, as a share",
+                       0,
+                       [](const Texels& map) { return most(of(map, "dark")) / mean(of(map, "bright")); },
+                       {{{0, 0.5}, {0, 0.5}, {0}}},
+                       reason,
+                       why}}};
 }
 
 // K plates above each other, each of which glows downwards with its own radiance and is black on top, over a
@@ -91,30 +90,30 @@ Case plates() {
       .psf = 24,
       .bounces = 1,
       .spp = 16,
-      .figures = {
-          {"worst texel in the middle of a plate",
-           0,
-           [=](const Texels& map) {
-             const auto middles = where(map, [](const Texel& texel) {
-               return texel.node == "top" && std::abs(texel.position.x) < 1 && std::abs(texel.position.z) < 1;
-             });
-             double worst = 0;
-             for (const auto& texel : middles) {
-               const double exact = pi * glow(static_cast<int>(std::lround(texel.position.y / apart))) *
-                                    rectangle_factor(texel.position.x, texel.position.z, wide, wide, gap);
-               worst = std::max(worst, beyond_noise(texel, exact) / exact);
-             }
-             return worst;
-           },
-           {{{0.01, 1.2}, {0.01}, {0.01}}},
-           "1 %: a layer that is lost shows as another plate's radiance, 20 % off at least. What few "
-           "directions miss at the plates' rims is less, since these are 9 gaps "
-           "away. The reference's noise is taken off.",
-           "stencil routing counts layers sample by sample. Where the rim of a plate higher up crosses a "
-           "pixel, some "
-           "of its samples count one layer less, and a layer between is in none of them or in two. That takes "
-           "a stack as high as the seventh plate, since lower rims are out of sight of the middle; it is no "
-           "limit of layers. The list holds all 32."}}};
+      .figures = {{"worst texel in the middle of a plate",
+                   0,
+                   [=](const Texels& map) {
+                     const auto middles = where(map, [](const Texel& texel) {
+                       return texel.node == "top" && std::abs(texel.position.x) < 1 &&
+                              std::abs(texel.position.z) < 1;
+                     });
+                     double worst = 0;
+                     for (const auto& texel : middles) {
+                       const double exact =
+                           pi * glow(static_cast<int>(std::lround(texel.position.y / apart))) *
+                           rectangle_factor(texel.position.x, texel.position.z, wide, wide, gap);
+                       worst = std::max(worst, beyond_noise(texel, exact) / exact);
+                     }
+                     return worst;
+                   },
+                   {{{0.01, 1.2}, {0.01}, {0.01}}},
+                   "1 %: a layer that is lost shows as another plate's radiance, 20 % off at least. What few "
+                   "directions miss at the plates' rims is less, since these are 9 gaps away. The reference's "
+                   "noise is taken off.",
+                   "stencil routing counts layers sample by sample. Where the rim of a plate higher up crosses "
+                   "a pixel, some of its samples count one layer less, and a layer between is in none of them "
+                   "or in two. That takes a stack as high as the seventh plate, since lower rims are out of "
+                   "sight of the middle; it is no limit of layers. The list holds all 32."}}};
 }
 
 // A floor with a box that goes through it, under a lamp. The texels in the box are asked.
@@ -162,23 +161,22 @@ std::vector<Case> separation_cases() {
       dark_room("dark_room_half_pixel", 0.5),
       dark_room("dark_room_tenth_pixel", 0.1),
       plates(),
-      inside(
-          "inside_one_sided", false, 1, 1, {{{0.03}, {0.03}, {0.005}}},
-          "One-sided surfaces are not there from behind: the floor in a box is lit as without the box, by the "
-          "ceiling of a black cube (Howell, B-3).",
-          "3 %: of N = 184 directions that hit the lamp its outline leaves 2 N^-3/4 = 4 % to chance in one "
-          "texel; "
-          "these 81 lie close together, and even less of it out than a whole floor does.",
-          ""),
+      inside("inside_one_sided", false, 1, 1, {{{0.03}, {0.03}, {0.005}}},
+             "One-sided surfaces are not there from behind: the floor in a box is lit as without the box, by "
+             "the ceiling of a black cube (Howell, B-3).",
+             "3 %: of N = 184 directions that hit the lamp its outline leaves 2 N^-3/4 = 4 % to chance in one "
+             "texel; the mean over 81 texels has less, though not as little as a whole floor, since these lie "
+             "close together.",
+             ""),
       inside("inside_double_sided", true, 1, 0, {{{0, 0.05}, {0}, {0}}},
              "A double-sided box is shut: no direct light in it.", "exactly 0: every direction meets the box.",
              "where the edge of a face crosses a pixel, stencil routing loses a layer of the box. The list "
              "does not."),
-      inside(
-          "inside_double_sided_2_bounces", true, 2, 0, {{{0, 0.6}, {0, 0.6}, {0}}},
-          "Shut for reflected light too: the box is lit from outside alone.", "exactly 0, as with one bounce.",
-          "a double-sided surface has one texel for both faces, which sends what falls on its front both ways. "
-          "Model walls with a thickness, as two one-sided faces.")};
+      inside("inside_double_sided_2_bounces", true, 2, 0, {{{0, 0.6}, {0, 0.6}, {0}}},
+             "Shut for reflected light too: the box is lit from outside alone.",
+             "exactly 0, as with one bounce.",
+             "a double-sided surface has one texel for both faces, which sends what falls on its front both "
+             "ways. Model walls with a thickness, as two one-sided faces.")};
 }
 
 }  // namespace lichtveld::stability
