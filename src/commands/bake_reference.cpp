@@ -1,30 +1,13 @@
 #include <spdlog/spdlog.h>
 
 #include <chrono>
-#include <cmath>
 #include <thread>
 
 #include "bake.hpp"
 #include "lichtveld/lightfield/presenter.hpp"
-#include "lichtveld/reference/path_tracer.hpp"
+#include "lichtveld/reference/error.hpp"
 
 namespace lichtveld::commands {
-
-namespace {
-
-// The root of the mean squared standard error over the valid texels, as a share of E's mean: what rel_rmse
-// against the exact answer has to be expected.
-double expected_rel_rmse(const reference::Irradiance& traced) {
-  double squares = 0, sum = 0;
-  for (std::size_t texel = 0; texel < traced.texels.size(); ++texel) {
-    if (traced.texels[texel].a == 0) continue;
-    squares += double{traced.standard_error[texel]} * traced.standard_error[texel];
-    sum += (double{traced.texels[texel].r} + traced.texels[texel].g + traced.texels[texel].b) / 3;
-  }
-  return sum > 0 ? std::sqrt(squares * traced.texels_valid) / sum : 0;
-}
-
-}  // namespace
 
 Baked bake_reference(const BakeOptions& options, const BakeJob& job) {
   const reference::Settings settings{.size = options.settings.size,
@@ -50,7 +33,7 @@ Baked bake_reference(const BakeOptions& options, const BakeJob& job) {
       {"spp", settings.spp},
       {"seed", settings.seed},
       {"bounces_used", settings.bounces ? nlohmann::json(*settings.bounces) : nlohmann::json("auto")},
-      {"standard_error", expected_rel_rmse(traced)},
+      {"standard_error", reference::expected_rel_rmse(traced)},
       {"texels_valid", traced.texels_valid},
       {"miss_fraction",
        traced.rays > 0 ? static_cast<double>(traced.misses) / static_cast<double>(traced.rays) : 0.0},

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "commands_run.hpp"
-#include "image_error.hpp"
+#include "lichtveld/reference/error.hpp"
 #include "scene_builder.hpp"
 
 namespace lichtveld::testing {
@@ -29,7 +29,8 @@ class Accuracy : public ::testing::TestWithParam<Demand> {};
 
 TEST_P(Accuracy, Of384DirectionsAgainst6144) {
   const TempFolder folder;
-  const double error = rel_rmse(bake(folder, GetParam().size, 384), bake(folder, GetParam().size, 6144));
+  const double error =
+      reference::error_of(bake(folder, GetParam().size, 384), bake(folder, GetParam().size, 6144)).rel_rmse;
   std::printf("size %d: rel_rmse of 384 PSFs against 6144 is %.4f\n", GetParam().size, error);
   EXPECT_LT(error, GetParam().most);
 }

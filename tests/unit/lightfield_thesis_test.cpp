@@ -5,8 +5,8 @@
 #include <numbers>
 
 #include "device_for_tests.hpp"
-#include "image_error.hpp"
 #include "lichtveld/lightfield/thesis.hpp"
+#include "lichtveld/reference/error.hpp"
 #include "scene_builder.hpp"
 
 namespace lichtveld::lightfield {
@@ -74,7 +74,7 @@ class ThesisMethod : public lichtveld::testing::WithDevice {
 };
 
 double rel_rmse(const Baked& a, const Baked& b) {
-  return lichtveld::testing::rel_rmse(a.irradiance, b.irradiance);
+  return reference::error_of(a.irradiance, b.irradiance).rel_rmse;
 }
 
 // Every wall sees pi * Le * (1 + rho + rho^2 + ..) : rows sum to one, so that nothing but a miss can spoil it.
