@@ -1,104 +1,131 @@
-// lichtveld bench: what each pass costs on this machine.
+// lichtveld bench: what light maps cost on this machine, and how near they come to the truth.
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 
+#include "bench_options.hpp"
 #include "command_list.hpp"
 #include "files.hpp"
-#include "lichtveld/lightfield/thesis.hpp"
-#include "options.hpp"
 #include "pass_table.hpp"
-#include "plot.hpp"
+#include "plots.hpp"
+#include "updates.hpp"
 
 namespace lichtveld::commands {
 
 namespace {
 
 namespace fs = std::filesystem;
-using lightfield::ABuffer;
-using lightfield::Sort;
 
-struct BenchOptions {
-  std::vector<std::string> scenes;
-  std::string out = "build/bench";
-  std::vector<std::uint32_t> sizes = {128, 256}, psfs = {96, 384};
-  std::uint32_t bounces = 2, repeats = 3;
-  gpu::DeviceOptions device;
+// A truth whose noise is more than this share of an error tells little about it.
+constexpr double most_noise = 0.5;
+// At the walk's end fewer paths do: one error a row is read there, no trend.
+constexpr std::uint32_t fewer_paths_after_walks = 4;
+
+struct NamedScene {
+  std::string name;
+  scene::Scene scene;
 };
 
-void run_once(const gpu::Device& device, const scene::Scene& scene, PassRow& row) {
-  lightfield::Thesis method(device, scene, row.settings);
-  const std::vector<glm::vec3> at_rest(scene.bodies.size(), glm::vec3(0));
-  const auto start = std::chrono::steady_clock::now();
-  method.solve(at_rest);
-  const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
-  row.runs.push_back(method.times());
-  row.total_ms.push_back(took.count());
+// All of them before long work, so that a mistake shows at once.
+std::vector<NamedScene> load_all(const BenchOptions& options) {
+  std::vector<NamedScene> scenes;
+  for (const auto& file : options.scenes) {
+    scenes.push_back({fs::path(file).stem().string(), scene::load(file)});
+    for (const auto size : options.sweep.sizes) scene::check_atlas(scenes.back().scene, size);
+  }
+  return scenes;
 }
 
-std::vector<PassRow> rows_for(const std::string& scene, const BenchOptions& options) {
-  std::vector<PassRow> rows;
-  for (const auto abuffer : {ABuffer::stencil, ABuffer::list})
-    for (const auto sort : {Sort::bitonic, Sort::compare_swap, Sort::scan})
-      for (const auto size : options.sizes)
-        for (const auto psf : options.psfs)
-          rows.push_back(
-              {fs::path(scene).stem().string(),
-               {.size = size, .psf = psf, .bounces = options.bounces, .abuffer = abuffer, .sort = sort},
-               {},
-               {}});
-  return rows;
+void check_all(const BenchOptions& options) {
+  rows_of("", options.sweep);
+  for (const auto bounces : options.sweep.bounces)
+    for (const auto spp : options.sweep.path_spps) reference::check({.bounces = bounces, .spp = spp});
+  reference::check({.spp = options.sweep.truth_spp});
+}
+
+UpdateOptions walks_of(const BenchOptions& options) {
+  const auto& sweep = options.sweep;
+  UpdateOptions walks{.steps = options.updates,
+                      .settings = {},
+                      .truth_spp = std::max(2u, sweep.truth_spp / fewer_paths_after_walks)};
+  for (const auto size : sweep.sizes)
+    for (const auto psf : options.update_psfs)
+      walks.settings.push_back(curve_settings(sweep.abuffers.back(), size, psf, sweep));
+  return walks;
+}
+
+void warn_of_noise(const SweepResult& result) {
+  for (const auto& panel : panels_of(result)) {
+    double least = INFINITY;
+    for (const auto* row : panel.rows) least = std::min(least, row->error.rel_rmse);
+    if (panel.truth->noise > most_noise * least)
+      spdlog::warn(
+          "{}: the reference's own noise, {:.2g} %, is part of the errors down to {:.2g} %; raise --spp",
+          panel.title, 100 * panel.truth->noise, 100 * least);
+  }
+}
+
+void append(SweepResult& all, SweepResult&& more) {
+  std::move(more.rows.begin(), more.rows.end(), std::back_inserter(all.rows));
+  std::move(more.truths.begin(), more.truths.end(), std::back_inserter(all.truths));
+}
+
+void write_charts(const SweepResult& result, const fs::path& out) {
+  const auto passes = rows_with_passes(result.rows);
+  write_text(out / "chart.csv", chart_csv(result.rows));
+  write_text(out / "passes.csv", pass_csv(passes));
+  const auto table = rows_of_most_sorts(passes);
+  std::printf(
+      "\nMilliseconds of all calls of a pass in one solve, medians\n\n%s\nThe thesis' findings here:\n%s\n%s",
+      pass_text(table).c_str(), findings(table).c_str(), chart_text(result).c_str());
+  std::fflush(stdout);
+  warn_of_noise(result);
+  plot_passes(table, out);
+  plot_chart(result, out);
+  plot_error_vs_psf(result, out);
 }
 
 void bench(const BenchOptions& options) {
-  if (options.repeats < 1) throw UsageError("--repeats: at least 1");
+  check_all(options);
+  const auto scenes = load_all(options);
   make_folder(options.out);
+  const fs::path out = options.out;
+  const ReferenceCache cache(options.reference_cache);
   const gpu::Device device(options.device);
-  std::vector<PassRow> rows;
-  for (const auto& file : options.scenes) {
-    const auto scene = scene::load(file);
-    auto of_scene = rows_for(file, options);
-    for (const auto& row : of_scene) lightfield::check(row.settings);
-    for (const auto size : options.sizes) scene::check_atlas(scene, size);
-    // Whole rounds, so that a disturbance of the machine does not fall on one row alone.
-    for (std::uint32_t repeat = 0; repeat < options.repeats; ++repeat)
-      for (auto& row : of_scene) {
-        run_once(device, scene, row);
-        spdlog::info("{} {} {} size {} psf {}: {:.0f} ms", row.scene, name_of(row.settings.abuffer),
-                     name_of(row.settings.sort), row.settings.size, row.settings.psf, row.total_ms.back());
-      }
-    rows.insert(rows.end(), of_scene.begin(), of_scene.end());
+  std::printf("%s\n", device.summary().name.c_str());
+
+  SweepResult result;
+  for (const auto& [name, scene] : scenes) append(result, sweep(device, scene, name, options.sweep, cache));
+  write_charts(result, out);
+  for (const auto& [name, scene] : scenes) plot_error_maps(result, name, out);
+
+  std::vector<UpdateRow> updates;
+  if (options.updates > 0)
+    for (const auto& [name, scene] : scenes) {
+      auto more = time_updates(device, scene, name, walks_of(options), cache);
+      std::move(more.begin(), more.end(), std::back_inserter(updates));
+    }
+  if (!updates.empty()) {
+    write_text(out / "updates.csv", updates_csv(updates));
+    std::printf("\nA light map after each step of the first movable body:\n%s", updates_text(updates).c_str());
   }
-  write_text(fs::path(options.out) / "passes.csv", pass_csv(rows));
-  std::printf(
-      "%s, medians of %u runs, %u bounces, ms of all calls of a pass in one solve\n\n%s\nThe thesis' findings "
-      "here:\n%s",
-      device.summary().name.c_str(), options.repeats, options.bounces, pass_text(rows).c_str(),
-      findings(rows).c_str());
-  std::fflush(stdout);
-  plot_passes(rows, options.out);
   check_validation(device);
+  spdlog::info("{}: tables (.csv) and charts (.svg, .png)", out.string());
 }
 
 }  // namespace
 
 void add_bench(CLI::App& application) {
-  auto* command =
-      application.add_subcommand("bench", "Time every pass, by A-buffer, sort, size and directions");
+  auto* command = application.add_subcommand(
+      "bench", "Speed against error: every way to compute a light map, timed and compared with the truth");
   const auto options = std::make_shared<BenchOptions>();
-  options->scenes = {"assets/cornell.glb"};
-  command->add_option("--scene", options->scenes, "Scenes, .glb or .gltf")
-      ->capture_default_str()
-      ->allow_extra_args(false);
-  command->add_option("--out", options->out, "The folder for passes.csv, passes.svg, passes.png")
-      ->capture_default_str();
-  command->add_option("--sizes", options->sizes, "Texels a side")->delimiter(',')->capture_default_str();
-  command->add_option("--psfs", options->psfs, "Directions")->delimiter(',')->capture_default_str();
-  command->add_option("--bounces", options->bounces, "Bounces of each solve")->capture_default_str();
-  command->add_option("--repeats", options->repeats, "Runs of each row; the medians are reported")
-      ->capture_default_str();
-  add_device_options(*command, options->device);
-  command->callback([options] { bench(*options); });
+  add_bench_options(*command, *options);
+  command->callback([options, command] {
+    complete(*command, *options);
+    bench(*options);
+  });
 }
 
 }  // namespace lichtveld::commands

@@ -124,18 +124,18 @@ void add_quality_options(CLI::App& command, lightfield::Settings& settings) {
       ->capture_default_str();
 }
 
+std::optional<std::uint32_t> parse_bounces(const std::string& text) {
+  if (text == "auto") return {};
+  std::uint32_t bounces = 0;
+  if (!CLI::detail::lexical_cast(text, bounces) || bounces < 1 || text.front() == '-')
+    throw UsageError("--bounces " + text + ": a number from 1 (direct light), or auto");
+  return bounces;
+}
+
 void add_bounces_option(CLI::App& command, lightfield::Settings& settings) {
   command
       .add_option_function<std::string>(
-          "--bounces",
-          [&settings](const std::string& text) {
-            settings.bounces.reset();
-            if (text == "auto") return;
-            std::uint32_t bounces = 0;
-            if (!CLI::detail::lexical_cast(text, bounces) || bounces < 1 || text.front() == '-')
-              throw UsageError("--bounces " + text + ": a number from 1 (direct light), or auto");
-            settings.bounces = bounces;
-          },
+          "--bounces", [&settings](const std::string& text) { settings.bounces = parse_bounces(text); },
           "Path segments up to a texel: 1 is direct light; auto: until less than 0.1 % of the mean can be "
           "missing")
       ->type_name("auto|N")

@@ -34,6 +34,9 @@ void add_light_field_options(CLI::App& command, lightfield::Settings& settings);
 // --size, --psf, --psf-size, --weights, --seed: what a light field's error depends on.
 void add_quality_options(CLI::App& command, lightfield::Settings& settings);
 
+// "auto" (nothing) or a number from 1. Throws UsageError for anything else.
+std::optional<std::uint32_t> parse_bounces(const std::string& text);
+
 // --bounces auto|N.
 void add_bounces_option(CLI::App& command, lightfield::Settings& settings);
 

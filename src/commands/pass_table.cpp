@@ -2,9 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
-#include "options.hpp"
+#include <map>
 
 namespace lichtveld::commands {
 
@@ -13,14 +11,9 @@ namespace {
 using lightfield::ABuffer;
 using lightfield::Sort;
 
-double median(std::vector<double> values) {
-  std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
-  return values[values.size() / 2];
-}
-
-std::uint64_t calls_of(const PassRow& row, const std::string& pass) {
-  const auto found = row.runs.front().find(pass);
-  return found == row.runs.front().end() ? 0 : found->second.calls;
+std::uint64_t calls_of(const BenchRow& row, const std::string& pass) {
+  const auto found = row.passes.front().find(pass);
+  return found == row.passes.front().end() ? 0 : found->second.calls;
 }
 
 std::string label(const lightfield::Settings& settings) {
@@ -29,7 +22,7 @@ std::string label(const lightfield::Settings& settings) {
 }
 
 // The row with these settings, or null.
-const PassRow* find(const std::vector<PassRow>& rows, const PassRow& like, ABuffer abuffer, Sort sort) {
+const BenchRow* find(const std::vector<BenchRow>& rows, const BenchRow& like, ABuffer abuffer, Sort sort) {
   for (const auto& row : rows)
     if (row.scene == like.scene && row.settings.size == like.settings.size &&
         row.settings.psf == like.settings.psf && row.settings.abuffer == abuffer && row.settings.sort == sort)
@@ -49,33 +42,51 @@ const std::vector<std::string>& pass_names() {
   return names;
 }
 
-double pass_ms(const PassRow& row, const std::string& pass) {
+double pass_ms(const BenchRow& row, const std::string& pass) {
   std::vector<double> values;
-  for (const auto& run : row.runs) {
+  for (const auto& run : row.passes) {
     const auto found = run.find(pass);
     values.push_back(found == run.end() ? 0 : found->second.gpu_ms);
   }
   return median(values);
 }
 
-double total_ms(const PassRow& row) {
+double total_ms(const BenchRow& row) {
   return median(row.total_ms);
 }
 
-std::string pass_csv(const std::vector<PassRow>& rows) {
+std::vector<BenchRow> rows_with_passes(const std::vector<BenchRow>& rows) {
+  std::vector<BenchRow> chosen;
+  for (const auto& row : rows)
+    if (row.method != Method::reference && !row.side) chosen.push_back(row);
+  return chosen;
+}
+
+std::vector<BenchRow> rows_of_most_sorts(const std::vector<BenchRow>& rows) {
+  std::map<std::uint32_t, std::size_t> rows_of_psf;
+  for (const auto& row : rows) ++rows_of_psf[row.settings.psf];
+  std::uint32_t psf = 0;
+  for (const auto& [count, ways] : rows_of_psf)
+    if (psf == 0 || ways >= rows_of_psf[psf]) psf = count;
+  auto chosen = rows;
+  std::erase_if(chosen, [psf](const BenchRow& row) { return row.settings.psf != psf; });
+  return chosen;
+}
+
+std::string pass_csv(const std::vector<BenchRow>& rows) {
   std::string csv = "scene,method,abuffer,sort,size,psf,bounces,pass,calls,ms_median,ms_a_call\n";
   for (const auto& row : rows)
     for (const auto& pass : pass_names()) {
       const auto calls = calls_of(row, pass);
       const double ms = pass_ms(row, pass);
-      csv += fmt::format("{},thesis,{},{},{},{},{:.4f},{:.6f}\n", row.scene, label(row.settings),
-                         *row.settings.bounces, pass, calls, ms,
+      csv += fmt::format("{},{},{},{},{},{},{:.4f},{:.6f}\n", csv_cell(row.scene), name_of(row.method),
+                         label(row.settings), name_of_bounces(row.settings), pass, calls, ms,
                          calls > 0 ? ms / static_cast<double>(calls) : 0.0);
     }
   return csv;
 }
 
-std::string pass_text(const std::vector<PassRow>& rows) {
+std::string pass_text(const std::vector<BenchRow>& rows) {
   std::string text = fmt::format("{:<8} {:<13} {:>5} {:>5}", "abuffer", "sort", "size", "psf");
   for (const auto& pass : pass_names()) text += fmt::format(" {:>16}", pass);
   text += fmt::format(" {:>9}\n", "total ms");
@@ -88,7 +99,7 @@ std::string pass_text(const std::vector<PassRow>& rows) {
   return text;
 }
 
-std::string findings(const std::vector<PassRow>& rows) {
+std::string findings(const std::vector<BenchRow>& rows) {
   std::string text;
   for (const auto& row : rows) {
     // As the thesis first measured: stencil routing, bitonic sort.

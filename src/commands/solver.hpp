@@ -1,0 +1,30 @@
+// The methods that run on a device, behind one interface, so that bench can line them up.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "lichtveld/gpu/frame.hpp"
+#include "options.hpp"
+
+namespace lichtveld::commands {
+
+class Solver {
+ public:
+  virtual ~Solver() = default;
+
+  // Computes E with body i shifted by offsets[i] [m], one entry a body.
+  virtual lightfield::Solution solve(const std::vector<glm::vec3>& offsets) = 0;
+
+  virtual std::vector<glm::vec4> irradiance() = 0;  // after solve()
+  virtual const gpu::PassTimes& times() const = 0;  // since the start
+};
+
+// What bench compares with the reference, the published method first: the others are measured against it.
+const std::vector<Method>& device_methods();
+
+// The device and the scene must outlive it.
+std::unique_ptr<Solver> make_solver(Method method, const gpu::Device& device, const scene::Scene& scene,
+                                    const lightfield::Settings& settings);
+
+}  // namespace lichtveld::commands

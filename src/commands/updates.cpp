@@ -1,0 +1,125 @@
+#include "updates.hpp"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <array>
+#include <chrono>
+#include <cmath>
+
+#include "lichtveld/scene/collision.hpp"
+#include "solver.hpp"
+#include "sweep.hpp"
+
+namespace lichtveld::commands {
+
+namespace {
+
+using Places = std::vector<glm::vec3>;
+using Clock = std::chrono::steady_clock;
+
+// A rest of a step before a wall is no step: the light hardly changes.
+constexpr float least_share_of_a_step = 0.5f;
+constexpr std::uint64_t seed_of_truth = 1;
+
+UpdateRow run_walk(const gpu::Device& device, const scene::Scene& scene, UpdateRow row,
+                   const std::vector<Places>& places, const reference::Irradiance* truth) {
+  const auto solver = make_solver(row.method, device, scene, row.settings);
+  solver->solve(Places(scene.bodies.size(), glm::vec3(0)));
+  for (const auto& place : places) {
+    const auto start = Clock::now();
+    solver->solve(place);
+    row.ms.push_back(std::chrono::duration<double, std::milli>(Clock::now() - start).count());
+  }
+  if (truth != nullptr) {
+    row.rel_rmse = reference::error_of(solver->irradiance(), truth->texels).rel_rmse;
+    row.noise_of_truth = reference::expected_rel_rmse(*truth);
+  }
+  return row;
+}
+
+}  // namespace
+
+std::vector<Places> walk(const scene::Scene& scene, std::uint32_t steps) {
+  if (scene.bodies.size() < 2) return {};
+  const float length = scene::step_length(scene);
+  const std::array<glm::vec3, 4> ways = {glm::vec3(length, 0, 0), glm::vec3(0, length, 0),
+                                         glm::vec3(-length, 0, 0), glm::vec3(0, -length, 0)};
+  std::vector<Places> places;
+  Places now(scene.bodies.size(), glm::vec3(0));
+  std::size_t way = 0;
+  while (places.size() < steps) {
+    std::size_t turns = 0;
+    glm::vec3 step(0);
+    for (; turns < ways.size(); ++turns, way = (way + 1) % ways.size()) {
+      step = scene::free_step(scene, now, 1, ways[way]);
+      if (glm::length(step) >= least_share_of_a_step * length) break;
+    }
+    if (turns == ways.size()) return {};
+    now[1] += step;
+    places.push_back(now);
+  }
+  return places;
+}
+
+std::vector<UpdateRow> time_updates(const gpu::Device& device, const scene::Scene& scene,
+                                    const std::string& name, const UpdateOptions& options,
+                                    const ReferenceCache& cache) {
+  const auto places = walk(scene, options.steps);
+  if (places.empty()) {
+    spdlog::warn("{}: no updates are timed: {}", scene.file,
+                 scene.bodies.size() < 2 ? "no node has extras.movable"
+                                         : "\"" + scene.bodies[1].node + "\" is blocked on every side");
+    return {};
+  }
+  std::vector<UpdateRow> rows;
+  for (const auto& settings : options.settings) {
+    std::optional<reference::Irradiance> truth;
+    if (!is_dark(scene))
+      truth = cache.traced(scene, places.back(),
+                           {.size = settings.size,
+                            .bounces = settings.bounces,
+                            .spp = options.truth_spp,
+                            .seed = seed_of_truth});
+    double of_thesis = not_known;
+    for (const auto method : device_methods()) {
+      auto row = run_walk(device, scene, {.scene = name, .method = method, .settings = settings}, places,
+                          truth ? &*truth : nullptr);
+      const double p50 = median(row.ms);
+      if (method == Method::thesis) of_thesis = p50;
+      row.speedup_vs_thesis = of_thesis / p50;
+      spdlog::info("{} {} size {} psf {}: {} updates, {:.0f} ms each", name, name_of(method), settings.size,
+                   settings.psf, row.ms.size(), p50);
+      rows.push_back(std::move(row));
+    }
+  }
+  return rows;
+}
+
+std::string updates_csv(const std::vector<UpdateRow>& rows) {
+  std::string csv = "method,size,psf,ms_p50,ms_p95,speedup_vs_thesis,rel_rmse,scene\n";
+  for (const auto& row : rows)
+    csv += fmt::format("{},{},{},{:.4f},{:.4f},{:.3f},{},{}\n", name_of(row.method), row.settings.size,
+                       row.settings.psf, median(row.ms), percentile(row.ms, 0.95), row.speedup_vs_thesis,
+                       std::isfinite(row.rel_rmse) ? fmt::format("{:.6g}", row.rel_rmse) : "",
+                       csv_cell(row.scene));
+  return csv;
+}
+
+std::string updates_text(const std::vector<UpdateRow>& rows) {
+  std::string text;
+  for (const auto& row : rows) {
+    text += fmt::format(
+        "  {:<12} {:<8} --size {:<4} --psf {:<5} median {:9.1f} ms, 95 % below {:9.1f} ms, {:5.2f} "
+        "times as fast as thesis",
+        row.scene, name_of(row.method), row.settings.size, row.settings.psf, median(row.ms),
+        percentile(row.ms, 0.95), row.speedup_vs_thesis);
+    if (std::isfinite(row.rel_rmse))
+      text += fmt::format(", rel_rmse {:.2f} % (reference's noise {:.2f} %)", 100 * row.rel_rmse,
+                          100 * row.noise_of_truth);
+    text += "\n";
+  }
+  return text;
+}
+
+}  // namespace lichtveld::commands
