@@ -160,7 +160,7 @@ void add_bench_options(CLI::App& command, BenchOptions& options) {
       ->type_name("solid-angle|equal,..")
       ->default_str("solid-angle,equal");
   add_count(command, "--repeats", sweep.repeats, usual.repeats, quick.repeats,
-            "Runs of each row, of which medians are reported; a row that has taken 20 s is not run again");
+            "Runs of each row, of which medians are reported; a row that has taken 10 s is not run again");
   add_count(command, "--spp", sweep.truth_spp, usual.truth_spp, quick.truth_spp,
             "Paths a texel of the reference, the truth that errors are measured against, 2..1000000");
   add_counts(command, "--path-spp", sweep.path_spps, usual.path_spps, quick.path_spps,

@@ -65,7 +65,9 @@ std::string chart_csv(const std::vector<BenchRow>& rows) {
 std::vector<Panel> panels_of(const SweepResult& result) {
   std::vector<Panel> panels;
   for (const auto& truth : result.truths) {
-    const auto bounces = truth.bounces ? fmt::format("{} bounces", *truth.bounces) : "all bounces";
+    const auto bounces = !truth.bounces        ? "all bounces"
+                         : *truth.bounces == 1 ? "direct light"
+                                               : fmt::format("{} bounces", *truth.bounces);
     Panel panel{fmt::format("{}, {}² texels, {}", truth.scene, truth.size, bounces), &truth, {}};
     for (const auto& row : result.rows)
       if (row.scene == truth.scene && row.settings.size == truth.size &&

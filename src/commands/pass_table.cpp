@@ -25,7 +25,8 @@ std::string label(const lightfield::Settings& settings) {
 const BenchRow* find(const std::vector<BenchRow>& rows, const BenchRow& like, ABuffer abuffer, Sort sort) {
   for (const auto& row : rows)
     if (row.scene == like.scene && row.settings.size == like.settings.size &&
-        row.settings.psf == like.settings.psf && row.settings.abuffer == abuffer && row.settings.sort == sort)
+        row.settings.psf == like.settings.psf && row.settings.bounces == like.settings.bounces &&
+        row.settings.abuffer == abuffer && row.settings.sort == sort)
       return &row;
   return nullptr;
 }

@@ -51,13 +51,13 @@ std::string plot_panel(const Panel& panel, std::size_t number) {
         ", ${0} using 1:2:3 with labels offset {4} font ',10' tc rgb '{2}' notitle",
         block, traced ? 9 : 7 - 2 * (i % 2), ink, plot_text(curves[i].name),
         i == 0   ? "1.2,0.7 left"
-        : traced ? "1.2,0.5 left"
+        : traced ? "0.3,0.9 left"
                  : "-1.2,-0.7 right");
   }
   plot += fmt::format(", {:g} with lines dt 2 lw 1.5 lc rgb '#888888' title {}", 100 * panel.truth->noise,
                       plot_text(fmt::format("the reference's own noise ({} paths a texel): {:.2g} %",
                                             panel.truth->spp, 100 * panel.truth->noise)));
-  return blocks + fmt::format("set title {}\n", plot_text(panel.title)) + plot + "\n";
+  return blocks + fmt::format("set title {} noenhanced\n", plot_text(panel.title)) + plot + "\n";
 }
 
 }  // namespace

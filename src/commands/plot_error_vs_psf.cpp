@@ -62,7 +62,7 @@ std::string plot_panel(const Panel& panel, std::size_t number) {
   }
   plot += fmt::format("{:g} with lines dt 2 lw 1.5 lc rgb '#888888' title {}", 100 * panel.truth->noise,
                       plot_text(fmt::format("the reference's own noise: {:.2g} %", 100 * panel.truth->noise)));
-  return blocks + fmt::format("set title {}\n", plot_text(panel.title)) + plot + "\n";
+  return blocks + fmt::format("set title {} noenhanced\n", plot_text(panel.title)) + plot + "\n";
 }
 
 }  // namespace

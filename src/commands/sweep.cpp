@@ -22,7 +22,7 @@ using Clock = std::chrono::steady_clock;
 using Milliseconds = std::chrono::duration<double, std::milli>;
 
 // A row whose runs took so long together is known well enough: disturbances are short [ms].
-constexpr double long_enough = 20'000;
+constexpr double long_enough = 10'000;
 // Path tracing as a method draws other numbers than the truth, or it would find part of itself there.
 constexpr std::uint64_t seed_of_truth = 1, seed_of_paths = 2;
 
