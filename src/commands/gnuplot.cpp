@@ -67,10 +67,10 @@ fs::path drawn(const std::string& format, const Chart& chart, const Scratch& scr
 
 }  // namespace
 
-bool draw(const Chart& chart, const fs::path& folder) {
+void draw(const Chart& chart, const fs::path& folder) {
   if (std::system("command -v gnuplot >/dev/null 2>&1") != 0) {
     spdlog::warn("no {}: gnuplot is not installed; install gnuplot-nox (the tables are written)", chart.name);
-    return false;
+    return;
   }
   try {
     const Scratch scratch;
@@ -81,9 +81,7 @@ bool draw(const Chart& chart, const fs::path& folder) {
     }
   } catch (const std::exception& error) {
     spdlog::warn("no {}: {} (the tables are written)", chart.name, error.what());
-    return false;
   }
-  return true;
 }
 
 std::string plot_text(const std::string& text) {

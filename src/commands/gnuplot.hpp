@@ -17,9 +17,9 @@ struct Chart {
   std::vector<std::string> formats = {"svg", "png"};
 };
 
-// Writes NAME.svg and NAME.png into a folder, whole or not at all. Returns false, and says so in the log, where
-// gnuplot is not installed or fails.
-bool draw(const Chart& chart, const std::filesystem::path& folder);
+// Writes NAME.svg and NAME.png into a folder, whole or not at all. Where gnuplot is not installed or fails, the
+// log says so, and that is all: charts are drawn from tables, which are there.
+void draw(const Chart& chart, const std::filesystem::path& folder);
 
 // Text in single quotes, as gnuplot wants strings that mean nothing but themselves.
 std::string plot_text(const std::string& text);
@@ -32,7 +32,7 @@ std::string ticks_of_per_cent();
 // Colours that the colour-blind can tell from each other (Okabe and Ito 2008), "#rrggbb"; they repeat.
 std::string colour(std::size_t index);
 
-// The most columns * rows of so many panels beside and below each other.
+// How so many panels stand beside and below each other.
 struct Layout {
   std::size_t columns, rows;
 };

@@ -62,9 +62,9 @@ std::string plot_panel(const Panel& panel, std::size_t number) {
 
 }  // namespace
 
-bool plot_chart(const SweepResult& result, const std::filesystem::path& folder) {
+void plot_chart(const SweepResult& result, const std::filesystem::path& folder) {
   const auto panels = panels_of(result);
-  if (panels.empty()) return false;
+  if (panels.empty()) return;
   Range time, error;
   for (const auto& panel : panels) {
     error.take(100 * panel.truth->noise);
@@ -85,11 +85,11 @@ bool plot_chart(const SweepResult& result, const std::filesystem::path& folder) 
       "set key below left Left reverse maxcols 1 noenhanced\nset border 3\nset tics nomirror\n",
       rows, columns, ticks_of_time(), ticks_of_per_cent(), time.text(0.5, 2.5), error.text(0.7, 1.4));
   for (std::size_t i = 0; i < panels.size(); ++i) script += plot_panel(panels[i], i);
-  return draw({.name = "chart",
-               .width = static_cast<int>(columns) * 760 + (columns == 1 ? 200 : 0),
-               .height = static_cast<int>(rows) * 720,
-               .script = script + "unset multiplot\n"},
-              folder);
+  draw({.name = "chart",
+        .width = static_cast<int>(columns) * 760 + (columns == 1 ? 200 : 0),
+        .height = static_cast<int>(rows) * 720,
+        .script = script + "unset multiplot\n"},
+       folder);
 }
 
 }  // namespace lichtveld::commands

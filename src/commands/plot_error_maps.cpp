@@ -108,7 +108,7 @@ std::string cell(std::size_t column, std::size_t columns, bool top) {
 
 }  // namespace
 
-bool plot_error_maps(const SweepResult& result, const std::string& scene, const std::filesystem::path& folder) {
+void plot_error_maps(const SweepResult& result, const std::string& scene, const std::filesystem::path& folder) {
   for (const auto& panel : panels_of(result)) {
     const auto rows = rows_to_show(panel);
     if (panel.truth->scene != scene || rows.empty()) continue;
@@ -147,9 +147,8 @@ bool plot_error_maps(const SweepResult& result, const std::string& scene, const 
                                   plot_text(columns[i].below), error, image);
     }
     chart.script += "unset multiplot\n";
-    return draw(chart, folder);
+    draw(chart, folder);
   }
-  return false;
 }
 
 }  // namespace lichtveld::commands

@@ -67,10 +67,10 @@ std::string plot_panel(const Panel& panel, std::size_t number) {
 
 }  // namespace
 
-bool plot_error_vs_psf(const SweepResult& result, const std::filesystem::path& folder) {
+void plot_error_vs_psf(const SweepResult& result, const std::filesystem::path& folder) {
   auto panels = panels_of(result);
   std::erase_if(panels, [](const Panel& panel) { return variants_of(panel).empty(); });
-  if (panels.empty()) return false;
+  if (panels.empty()) return;
   std::set<std::uint32_t> counts;
   double low = INFINITY, high = 0;
   for (const auto& panel : panels) {
@@ -96,11 +96,11 @@ bool plot_error_vs_psf(const SweepResult& result, const std::filesystem::path& f
       rows, columns, ticks, ticks_of_per_cent(), *counts.begin() * 0.7, *counts.rbegin() * 1.4, low * 0.7,
       high * 1.4);
   for (std::size_t i = 0; i < panels.size(); ++i) script += plot_panel(panels[i], i);
-  return draw({.name = "error_vs_psf",
-               .width = static_cast<int>(columns) * 700 + (columns == 1 ? 200 : 0),
-               .height = static_cast<int>(rows) * 660,
-               .script = script + "unset multiplot\n"},
-              folder);
+  draw({.name = "error_vs_psf",
+        .width = static_cast<int>(columns) * 700 + (columns == 1 ? 200 : 0),
+        .height = static_cast<int>(rows) * 660,
+        .script = script + "unset multiplot\n"},
+       folder);
 }
 
 }  // namespace lichtveld::commands

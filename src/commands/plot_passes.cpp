@@ -34,23 +34,22 @@ std::string plot_command() {
 
 }  // namespace
 
-bool plot_passes(const std::vector<BenchRow>& rows, const std::filesystem::path& folder) {
-  if (rows.empty()) return false;
-  return draw(
-      {.name = "passes",
-       .width = 1200,
-       .height = 700,
-       .script = data_block(rows) +
-                 "set title 'What one direction costs in one bounce: each pass, by A-buffer, sort, size "
-                 "and directions' noenhanced\n"
-                 "set style data histograms\nset style histogram rowstacked\n"
-                 "set style fill solid 0.9 border -1\nset boxwidth 0.8\n"
-                 "set xtics rotate by 90 right noenhanced font ',9'\nset bmargin 13\n"
-                 "set xlabel 'A-buffer, sort, size, directions' offset 0,-8\n"
-                 "set ylabel 'milliseconds a direction and bounce'\nset grid ytics\n"
-                 "set key top right noenhanced invert\nset yrange [0:*]\n" +
-                 plot_command()},
-      folder);
+void plot_passes(const std::vector<BenchRow>& rows, const std::filesystem::path& folder) {
+  if (rows.empty()) return;
+  draw({.name = "passes",
+        .width = 1200,
+        .height = 700,
+        .script = data_block(rows) +
+                  "set title 'What one direction costs in one bounce: each pass, by A-buffer, sort, size "
+                  "and directions' noenhanced\n"
+                  "set style data histograms\nset style histogram rowstacked\n"
+                  "set style fill solid 0.9 border -1\nset boxwidth 0.8\n"
+                  "set xtics rotate by 90 right noenhanced font ',9'\nset bmargin 13\n"
+                  "set xlabel 'A-buffer, sort, size, directions' offset 0,-8\n"
+                  "set ylabel 'milliseconds a direction and bounce'\nset grid ytics\n"
+                  "set key top right noenhanced invert\nset yrange [0:*]\n" +
+                  plot_command()},
+       folder);
 }
 
 }  // namespace lichtveld::commands

@@ -11,15 +11,15 @@
 namespace lichtveld::commands {
 
 // passes.svg, passes.png: stacked bars, a bar a row, of the milliseconds that one direction costs in each pass.
-bool plot_passes(const std::vector<BenchRow>& rows, const std::filesystem::path& folder);
+void plot_passes(const std::vector<BenchRow>& rows, const std::filesystem::path& folder);
 
 // chart.svg, chart.png: error against time, a line a method, the Pareto front marked.
-bool plot_chart(const SweepResult& result, const std::filesystem::path& folder);
+void plot_chart(const SweepResult& result, const std::filesystem::path& folder);
 
 // error_vs_psf.svg, .png: error against directions, with either weights and every resolution of PSFs.
-bool plot_error_vs_psf(const SweepResult& result, const std::filesystem::path& folder);
+void plot_error_vs_psf(const SweepResult& result, const std::filesystem::path& folder);
 
 // error_maps_SCENE.png: the light map of the truth and of some rows, and their differences from it, in colours.
-bool plot_error_maps(const SweepResult& result, const std::string& scene, const std::filesystem::path& folder);
+void plot_error_maps(const SweepResult& result, const std::string& scene, const std::filesystem::path& folder);
 
 }  // namespace lichtveld::commands
