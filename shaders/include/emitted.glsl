@@ -5,7 +5,8 @@
 // allows for (receiver_tolerance in routing.glsl).
 const float BACK_ROUNDING = 1e-4;
 
+float back_shift(float depth) { return 0.5 * fwidth(depth) + BACK_ROUNDING; }
+
 vec4 emitted(sampler2D radiance, vec2 atlas_coordinate, float depth, bool front) {
-  const float behind = front ? 0.0 : 0.5 * fwidth(depth) + BACK_ROUNDING;
-  return vec4(texture(radiance, atlas_coordinate).rgb, depth + behind);
+  return vec4(texture(radiance, atlas_coordinate).rgb, depth + (front ? 0.0 : back_shift(depth)));
 }

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 namespace lichtveld::shaders {
+using glm::ivec4;
 using glm::vec4;
 using uint = std::uint32_t;
 #endif
@@ -76,6 +77,45 @@ struct GutterConstants {
 
 struct LayerConstants {
   uint size, layer;
+};
+
+// --method links. A pair is a direction and its antipode, which share one A-buffer.
+
+// Texels that are routed together, and invocations of a workgroup over them.
+const uint TILE = 64;
+
+// Part of a pair's raster, and where it lies in the store that many parts share.
+struct Region {
+  PsfView view;
+  ivec4 rect;   // first column and row, columns, rows, of the pair's raster [pixels]
+  ivec4 place;  // xy: first column and row in the store [pixels]; z: the pair
+};
+
+struct EmitLinksConstants {
+  uint size;                       // of a pair's raster [pixels]
+  uint store_width, store_height;  // [pixels]
+  uint capacity, limit;            // layers that a pixel has room for; asked for: pixels with more are counted
+};
+
+struct RouteLinksConstants {
+  uint size;         // of a pair's raster [pixels]
+  uint store_width;  // [pixels]
+  uint texels;       // links that a pair has
+  uint first_pair;   // of the table's chunk
+  uint first_job;    // of this dispatch
+};
+
+struct GatherConstants {
+  uint texels;
+  uint first;       // pair of the chunk to start with; even
+  uint pairs;       // even
+  uint first_pair;  // of the chunk, among all
+  uint add;         // 1: to the sum that is there
+};
+
+struct BounceConstants {
+  uint texels;
+  float radiance_scale;  // what radiance is multiplied by before it is packed
 };
 
 // What a solve counts, summed over PSFs.

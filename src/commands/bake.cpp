@@ -40,8 +40,9 @@ void bake(const BakeOptions& options) {
   scene::check_atlas(job.scene, options.settings.size);
   for (const auto& text : options.moves) job.moves.push_back(parse_move(text, job.scene));
 
-  const Baked baked =
-      options.method == Method::reference ? bake_reference(options, job) : bake_thesis(options, job);
+  const Baked baked = options.method == Method::reference ? bake_reference(options, job)
+                      : options.method == Method::links   ? bake_links(options, job)
+                                                          : bake_thesis(options, job);
   write_exr(options.out, baked.irradiance, options.settings.size);
   if (!options.png.empty())
     write_bytes(options.png, stream::encode_png(baked.presented, options.settings.size));
@@ -82,7 +83,7 @@ void add_bake(CLI::App& application) {
       ->capture_default_str();
   add_quality_options(*command, options->settings);
   add_bounces_option(*command, options->settings);
-  add_method_option(*command, options->method, {Method::thesis, Method::reference});
+  add_method_option(*command, options->method, {Method::thesis, Method::links, Method::reference});
   add_light_field_options(*command, options->settings);
   command->add_option("--spp", options->spp, "Paths a texel of --method reference, 1..1000000")
       ->capture_default_str();
@@ -93,6 +94,8 @@ void add_bake(CLI::App& application) {
         options->method == Method::reference
             ? std::vector<std::string>{"--psf",    "--psf-size", "--weights", "--abuffer", "--sort",
                                        "--layers", "--live",     "--dump",    "--dump-psf"}
+        : options->method == Method::links
+            ? std::vector<std::string>{"--spp", "--abuffer", "--sort", "--dump", "--dump-psf"}
             : std::vector<std::string>{"--spp"};
     for (const auto& name : of_others)
       if (command->count(name) > 0)

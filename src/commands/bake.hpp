@@ -40,6 +40,7 @@ struct Baked {
   nlohmann::ordered_json report;
 };
 
+Baked bake_links(const BakeOptions& options, const BakeJob& job);
 Baked bake_thesis(const BakeOptions& options, const BakeJob& job);
 Baked bake_reference(const BakeOptions& options, const BakeJob& job);
 

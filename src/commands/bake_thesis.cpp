@@ -33,7 +33,7 @@ Baked bake_thesis(const BakeOptions& options, const BakeJob& job) {
   const std::chrono::duration<double, std::milli> total = std::chrono::steady_clock::now() - start;
 
   if (!options.png.empty()) baked.presented = method.presented();
-  baked.report = report(device, options.settings, solution, method.times(), total.count());
+  baked.report = report(device, Method::thesis, options.settings, solution, method.times(), total.count());
   check_validation(device);
   return baked;
 }

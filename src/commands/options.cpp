@@ -14,7 +14,8 @@ using lightfield::Sort;
 using lightfield::Weights;
 
 const std::map<std::string, ABuffer> abuffers = {{"stencil", ABuffer::stencil}, {"list", ABuffer::list}};
-const std::map<std::string, Method> methods = {{"thesis", Method::thesis}, {"reference", Method::reference}};
+const std::map<std::string, Method> methods = {
+    {"thesis", Method::thesis}, {"links", Method::links}, {"reference", Method::reference}};
 const std::map<std::string, Sort> sorts = {
     {"bitonic", Sort::bitonic}, {"compare-swap", Sort::compare_swap}, {"scan", Sort::scan}};
 const std::map<std::string, Weights> all_weights = {{"solid-angle", Weights::solid_angle},
@@ -84,8 +85,9 @@ void add_method_option(CLI::App& command, Method& method, const std::vector<Meth
   std::string help;
   for (const auto& [name, choice] : names)
     help += (help.empty() ? "" : "; ") + name +
-            (choice == Method::thesis ? ": every PSF rendered afresh in every bounce"
-                                      : ": path tracing on the CPU, the truth to compare with");
+            (choice == Method::thesis  ? ": every PSF rendered afresh in every bounce"
+             : choice == Method::links ? ": what each texel sees is kept, a move redoes only what it touched"
+                                       : ": path tracing on the CPU, the truth to compare with");
   add_choice(command, "--method", method, names, help);
 }
 

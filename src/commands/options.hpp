@@ -23,7 +23,7 @@ void add_device_options(CLI::App& command, gpu::DeviceOptions& options);
 // Throws std::runtime_error if the validation layers complained: a programmer's error must not pass unseen.
 void check_validation(const gpu::Device& device);
 
-enum class Method { thesis, reference };
+enum class Method { thesis, links, reference };
 
 // --method: one of these; others are refused by name.
 void add_method_option(CLI::App& command, Method& method, const std::vector<Method>& choices);

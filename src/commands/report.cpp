@@ -1,10 +1,8 @@
 #include "report.hpp"
 
-#include "options.hpp"
-
 namespace lichtveld::commands {
 
-nlohmann::ordered_json report(const gpu::Device& device, const lightfield::Settings& settings,
+nlohmann::ordered_json report(const gpu::Device& device, Method method, const lightfield::Settings& settings,
                               const lightfield::Solution& solution, const gpu::PassTimes& times,
                               double total_ms) {
   nlohmann::ordered_json passes, memory;
@@ -17,9 +15,9 @@ nlohmann::ordered_json report(const gpu::Device& device, const lightfield::Setti
   memory["total"] = total_bytes;
   return {{"device", device.summary().name},
           {"driver", device.summary().driver},
-          {"method", name_of(Method::thesis)},
-          {"abuffer", name_of(settings.abuffer)},
-          {"sort", name_of(settings.sort)},
+          {"method", name_of(method)},
+          {"abuffer", name_of(method == Method::links ? lightfield::ABuffer::list : settings.abuffer)},
+          {"sort", name_of(method == Method::links ? lightfield::Sort::scan : settings.sort)},
           {"size", settings.size},
           {"psf", settings.psf},
           {"psf_size", settings.raster()},

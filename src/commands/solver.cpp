@@ -1,5 +1,6 @@
 #include "solver.hpp"
 
+#include "lichtveld/lightfield/links.hpp"
 #include "lichtveld/lightfield/thesis.hpp"
 
 namespace lichtveld::commands {
@@ -23,7 +24,7 @@ class SolverOf : public Solver {
 }  // namespace
 
 const std::vector<Method>& device_methods() {
-  static const std::vector<Method> methods = {Method::thesis};
+  static const std::vector<Method> methods = {Method::thesis, Method::links};
   return methods;
 }
 
@@ -32,6 +33,8 @@ std::unique_ptr<Solver> make_solver(Method method, const gpu::Device& device, co
   switch (method) {
     case Method::thesis:
       return std::make_unique<SolverOf<lightfield::Thesis>>(device, scene, settings);
+    case Method::links:
+      return std::make_unique<SolverOf<lightfield::Links>>(device, scene, settings);
     case Method::reference:
       break;
   }

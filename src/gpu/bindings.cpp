@@ -65,8 +65,8 @@ void Draw::geometry(const Buffer& vertices, const Buffer& indices) {
   commands_.bindIndexBuffer(indices.handle(), 0, vk::IndexType::eUint32);
 }
 
-void Draw::indexed(std::uint32_t first, std::uint32_t count) {
-  if (count > 0) commands_.drawIndexed(count, 1, first, 0, 0);
+void Draw::indexed(std::uint32_t first, std::uint32_t count, std::uint32_t instances) {
+  if (count > 0) commands_.drawIndexed(count, instances, first, 0, 0);
 }
 
 void Draw::full_screen_triangle() {

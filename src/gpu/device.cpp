@@ -60,6 +60,7 @@ std::string missing_features(const vk::raii::PhysicalDevice& physical) {
   const auto& core = features.get<vk::PhysicalDeviceFeatures2>().features;
   const auto& newer = features.get<vk::PhysicalDeviceVulkan13Features>();
   want(core.fragmentStoresAndAtomics, "fragmentStoresAndAtomics");
+  want(core.shaderClipDistance, "shaderClipDistance");
   want(core.geometryShader, "geometryShader (a fragment's triangle number)");
   want(newer.dynamicRendering, "dynamicRendering");
   want(newer.synchronization2, "synchronization2");
@@ -106,6 +107,10 @@ DeviceSummary summarise(const vk::raii::PhysicalDevice& physical) {
   const auto memory = physical.getMemoryProperties();
   for (const auto& heap : std::span(memory.memoryHeaps.data(), memory.memoryHeapCount))
     if (heap.flags & vk::MemoryHeapFlagBits::eDeviceLocal) summary.memory += heap.size;
+  summary.storage_16_bit =
+      physical.getFeatures2<vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceVulkan11Features>()
+          .get<vk::PhysicalDeviceVulkan11Features>()
+          .storageBuffer16BitAccess;
   summary.missing = missing_features(physical);
   if (summary.missing.empty()) summary.samples = most_samples(physical);
   return summary;
@@ -173,9 +178,15 @@ vk::raii::Device make_device(const vk::raii::PhysicalDevice& physical, std::uint
   const vk::DeviceQueueCreateInfo queue{
       .queueFamilyIndex = family, .queueCount = 1, .pQueuePriorities = &priority};
   const vk::PhysicalDeviceFeatures core{.geometryShader = true,  // gl_PrimitiveID in fragment shaders
-                                        .fragmentStoresAndAtomics = true};
+                                        .fragmentStoresAndAtomics = true,
+                                        .shaderClipDistance = true};
+  const bool storage_16_bit = summarise(physical).storage_16_bit;
+  const vk::PhysicalDeviceVulkan11Features newer_11{.storageBuffer16BitAccess = storage_16_bit};
   const vk::PhysicalDeviceVulkan13Features newer{
-      .synchronization2 = true, .dynamicRendering = true, .maintenance4 = true};
+      .pNext = const_cast<vk::PhysicalDeviceVulkan11Features*>(&newer_11),
+      .synchronization2 = true,
+      .dynamicRendering = true,
+      .maintenance4 = true};
   const vk::PhysicalDeviceFeatures2 features{.pNext = const_cast<vk::PhysicalDeviceVulkan13Features*>(&newer),
                                              .features = core};
   return {physical,

@@ -62,6 +62,15 @@ LightMap::LightMap(const gpu::Device& device, std::uint32_t size)
       radiance(atlas_image(device, "radiance", size, rgba32f, Usage::eSampled)),
       presented(atlas_image(device, "presented", size, vk::Format::eR8G8B8A8Unorm, {})) {}
 
+void check_on(const gpu::Device& device, const Settings& settings) {
+  check(settings);
+  const auto largest = std::max(settings.size, settings.raster());
+  if (largest > device.summary().max_image_size)
+    throw std::invalid_argument("a size of " + std::to_string(largest) +
+                                " texels or pixels: " + device.summary().name + " can do " +
+                                std::to_string(device.summary().max_image_size) + " at most");
+}
+
 std::vector<std::uint8_t> download_presented(const gpu::Device& device, const LightMap& map) {
   const auto pixels = gpu::download<std::array<std::uint8_t, 4>>(device, map.presented);
   return {pixels.front().data(), pixels.front().data() + 4 * pixels.size()};
@@ -87,7 +96,8 @@ Geometry::Geometry(const gpu::Device& device, const scene::Scene& scene)
   device.name(sampler, "scene/sampler");
 }
 
-void Geometry::place(const std::vector<glm::vec3>& shifts, std::uint32_t pixels) {
+void Geometry::place(const std::vector<glm::vec3>& to, std::uint32_t pixels) {
+  shifts = to;
   sphere = scene::bounding_sphere(scene, shifts);
   const float pixel = 2 * sphere.radius / static_cast<float>(pixels);
   const auto found = scene::find_walls(scene, shifts, shaders::CONTACT * pixel, wall_reach * pixel);

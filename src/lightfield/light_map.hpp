@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "lichtveld/gpu/transfer.hpp"
+#include "lichtveld/lightfield/settings.hpp"
 #include "lichtveld/scene/scene.hpp"
 
 namespace lichtveld::lightfield {
@@ -31,6 +32,9 @@ struct LightMap {
   gpu::Image presented;        // sRGB RGBA8: tone-mapped L
 };
 
+// check(settings), and that the device can do images of that size.
+void check_on(const gpu::Device& device, const Settings& settings);
+
 // The presented map's bytes, RGBA.
 std::vector<std::uint8_t> download_presented(const gpu::Device& device, const LightMap& map);
 
@@ -38,12 +42,13 @@ std::vector<std::uint8_t> download_presented(const gpu::Device& device, const Li
 struct Geometry {
   Geometry(const gpu::Device& device, const scene::Scene& scene);
 
-  // Shifts body i by shifts[i] [m] from rest and finds what stands on what, as rasters of `pixels` a side can
+  // Shifts body i by to[i] [m] from rest and finds what stands on what, as rasters of `pixels` a side can
   // tell. Not while a frame is under way.
-  void place(const std::vector<glm::vec3>& shifts, std::uint32_t pixels);
+  void place(const std::vector<glm::vec3>& to, std::uint32_t pixels);
 
   const scene::Scene& scene;
-  scene::Sphere sphere;  // around all bodies at their places
+  std::vector<glm::vec3> shifts;  // of the bodies from rest [m]
+  scene::Sphere sphere;           // around all of them at their places
   gpu::Buffer vertices, indices;
   gpu::Buffer offsets;  // vec4 a body, host-visible
   gpu::Buffer walls_first,

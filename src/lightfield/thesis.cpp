@@ -24,15 +24,6 @@ constexpr std::uint32_t most_bounces = 256;
 // `auto` ends when the bound on what is missing falls below this share of the mean.
 constexpr double converged = 1e-3;
 
-void check_on(const gpu::Device& device, const Settings& settings) {
-  check(settings);
-  const auto largest = std::max(settings.size, settings.raster());
-  if (largest > device.summary().max_image_size)
-    throw std::invalid_argument("a size of " + std::to_string(largest) +
-                                " texels or pixels: " + device.summary().name + " can do " +
-                                std::to_string(device.summary().max_image_size) + " at most");
-}
-
 // The sort networks want a power of two, and every sample of a routed pass is used.
 std::uint32_t capacity_for(std::uint32_t layers, const Settings& settings, const gpu::Device& device) {
   const auto capacity = std::bit_ceil(layers);

@@ -60,7 +60,7 @@ class Draw {
   }
   void stencil_reference(std::uint32_t value);
   void geometry(const Buffer& vertices, const Buffer& indices);  // 32-bit indices
-  void indexed(std::uint32_t first, std::uint32_t count);
+  void indexed(std::uint32_t first, std::uint32_t count, std::uint32_t instances = 1);
   void full_screen_triangle();
 
  private:

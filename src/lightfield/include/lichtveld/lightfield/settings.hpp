@@ -44,7 +44,7 @@ struct Solution {
   std::uint32_t depth_layers_max = 0;  // most layers that any PSF pixel has
   std::uint64_t overflow_pixels = 0;   // PSF pixels with more layers than Settings::layers
   std::uint64_t rays = 0, misses = 0;  // of texels that face their direction; those that hit nothing
-  std::uint64_t rays_unknown = 0;  // those left out: no pixel near them lies on their side of all walls
+  std::uint64_t rays_unknown = 0;      // those left out: no pixel near them lies on their side of all walls
 };
 
 }  // namespace lichtveld::lightfield

@@ -1,0 +1,30 @@
+// One bounce's sum over pairs: w L of what each texel sees, and w. Included by a shader that defines two_links().
+
+layout(local_size_x = TILE) in;
+layout(binding = 1) readonly buffer Radiance { uint radiance[]; };      // packed, of each valid texel, then black
+layout(binding = 2) readonly buffer Directions { vec4 directions[]; };  // xyz; w: solid angle [sr], of each pair
+layout(binding = 3) readonly buffer TexelOf { uint texel_of[]; };
+layout(binding = 4, rgba32f) uniform readonly image2D normal;
+layout(binding = 5) buffer Sums { vec4 sums[]; };  // rgb: sum of w L [scaled]; a: sum of w [sr]
+layout(push_constant) uniform Push { GatherConstants constants; };
+
+#include "packed_radiance.glsl"
+
+vec4 seen(uint link, float weight) {
+  if (link == UNKNOWN(constants.texels)) weight = 0.0;
+  return weight * vec4(unpack_radiance(radiance[min(link, constants.texels)]), 1.0);
+}
+
+void main() {
+  const uint me = gl_GlobalInvocationID.x;
+  if (me >= constants.texels) return;
+  const uint width = uint(imageSize(normal).x);
+  const vec3 n = imageLoad(normal, ivec2(texel_of[me] % width, texel_of[me] / width)).xyz;
+  vec4 sum = constants.add != 0u ? sums[me] : vec4(0.0);
+  for (uint pair = constants.first; pair < constants.first + constants.pairs; pair += 2u) {
+    const vec4 a = directions[constants.first_pair + pair], b = directions[constants.first_pair + pair + 1u];
+    const uvec2 links = two_links(pair, me, constants.texels);
+    sum += seen(links.x, abs(dot(n, a.xyz)) * a.w) + seen(links.y, abs(dot(n, b.xyz)) * b.w);
+  }
+  sums[me] = sum;
+}

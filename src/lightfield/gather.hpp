@@ -1,0 +1,43 @@
+// gather: one bounce over kept links, E = pi * sum w L[link] / sum w (thesis, section 4.6, the order of the
+// loops turned round: texels outside, directions inside), then L = Le + albedo / pi * E, packed for the next
+// bounce. Reads the link table and packed radiance; writes total_irradiance and half_difference. Costs links: a
+// load of half a word and one of a word each.
+#pragma once
+
+#include <array>
+
+#include "lichtveld/lightfield/directions.hpp"
+#include "link_table.hpp"
+
+namespace lichtveld::lightfield {
+
+class Gather {
+ public:
+  // `scale`: what radiance is multiplied by to fit its packing.
+  Gather(const gpu::Device& device, const LinkTable& table, const std::vector<Direction>& directions,
+         float scale);
+
+  // L = Le: no bounce yet.
+  void start(gpu::Frame& frame, const LightMap& map, const LinkTable& table) const;
+  void bounce(gpu::Frame& frame, const LightMap& map, const LinkTable& table) const;
+
+  // After a bounce that the frame has waited for.
+  struct Change {
+    double most;  // largest change of E, any texel and channel [W m^-2]
+    double mean;  // of E
+  };
+  Change change(const LinkTable& table) const;
+
+ private:
+  void end(gpu::Frame& frame, const LightMap& map, const LinkTable& table) const;
+
+  std::uint32_t pairs_;
+  float scale_;
+  gpu::ComputePipeline gather_, end_;
+  gpu::Buffer radiance_;             // packed; the one after the last texel stays black
+  gpu::Buffer directions_;           // vec4 a pair
+  std::array<gpu::Buffer, 2> sums_;  // of each half of the directions
+  gpu::Buffer changes_;              // vec2 a tile, host-visible
+};
+
+}  // namespace lichtveld::lightfield

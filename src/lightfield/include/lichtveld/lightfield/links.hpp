@@ -1,0 +1,41 @@
+// --method links: for every pair of directions and every texel the texel that it sees is found once and kept. A
+// bounce is a sum over kept links; a moved body re-routes only what its old and its new projections touch.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "lichtveld/gpu/frame.hpp"
+#include "lichtveld/lightfield/settings.hpp"
+#include "lichtveld/scene/scene.hpp"
+
+namespace lichtveld::lightfield {
+
+class Links {
+ public:
+  // The device and the scene must outlive it. Throws std::invalid_argument for settings out of their ranges and
+  // std::runtime_error, before anything large is allocated, if the links do not fit into the device's memory.
+  Links(const gpu::Device& device, const scene::Scene& scene, const Settings& settings);
+  ~Links();
+
+  // Computes E with body i shifted by offsets[i] [m]; offsets has one entry a body. What is known from before
+  // is kept: links that no moved body touched, and with `--bounces auto` the light to start from.
+  Solution solve(const std::vector<glm::vec3>& offsets);
+
+  // The same within a frame: re-routes, then at most `bounces` bounces from the light as it is.
+  // Solution::residual says what may be missing; error_estimate and counts of rays are left out.
+  Solution update(const std::vector<glm::vec3>& offsets, std::uint32_t bounces);
+
+  // After either. size * size texels, row 0 on top.
+  std::vector<glm::vec4> irradiance();    // rgb: E [W m^-2]; a: 1 on valid texels
+  std::vector<std::uint8_t> presented();  // tone-mapped L, sRGB RGBA, gutters dilated
+
+  // What the passes have cost since the start, by name.
+  const gpu::PassTimes& times() const;
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace lichtveld::lightfield

@@ -1,0 +1,102 @@
+#include "link_table.hpp"
+
+#include <algorithm>
+#include <limits>
+
+namespace lichtveld::lightfield {
+
+namespace {
+
+// Atlas texels a side of a block that is numbered together: as many as a tile has, where all are valid.
+constexpr std::uint32_t block = 8;
+// Of the device's memory, links may take: the rest is for images, and for whoever else lives there.
+constexpr double most_of_memory = 0.75;
+
+std::vector<std::uint32_t> valid_texels(const std::vector<glm::vec4>& positions, std::uint32_t size) {
+  std::vector<std::uint32_t> found;
+  for (std::uint32_t top = 0; top < size; top += block)
+    for (std::uint32_t left = 0; left < size; left += block)
+      for (std::uint32_t y = top; y < std::min(top + block, size); ++y)
+        for (std::uint32_t x = left; x < std::min(left + block, size); ++x)
+          if (positions[std::size_t{y} * size + x].a > 0) found.push_back(y * size + x);
+  return found;
+}
+
+std::vector<std::uint32_t> body_of_triangles(const scene::Scene& scene) {
+  std::vector<std::uint32_t> bodies;
+  for (std::size_t corner = 0; corner < scene.indices.size(); corner += 3)
+    bodies.push_back(scene.vertices[scene.indices[corner]].body);
+  return bodies;
+}
+
+gpu::Image numbers(const gpu::Device& device, const LightMap& map, const std::vector<std::uint32_t>& texels) {
+  auto source = gpu::download<std::uint32_t>(device, map.source);
+  const auto none = static_cast<std::uint32_t>(texels.size());
+  std::vector<std::uint32_t> number(source.size(), none);
+  for (std::uint32_t index = 0; index < none; ++index) number[texels[index]] = index;
+  for (auto& from : source) from = from == shaders::NO_TEXEL ? none : number[from];
+  const auto staging = gpu::upload<std::uint32_t>(device, "lightfield/number (upload)", source,
+                                                  vk::BufferUsageFlagBits::eTransferSrc);
+  gpu::Image image(device, "lightfield/number", {.width = map.size, .height = map.size}, vk::Format::eR32Uint,
+                   vk::ImageUsageFlagBits::eStorage | vk::ImageUsageFlagBits::eTransferDst);
+  gpu::PassTimes times;
+  gpu::Frame frame(device, times);
+  frame.copy("number the texels", staging, image);
+  frame.submit_and_wait();
+  return image;
+}
+
+}  // namespace
+
+LinkTable::LinkTable(const gpu::Device& device, const scene::Scene& scene, const LightMap& map,
+                     std::uint32_t pairs)
+    : texel_of(device, "lightfield/texel_of", sizeof(std::uint32_t), vk::BufferUsageFlagBits::eStorageBuffer),
+      number(device, "lightfield/number", {}, vk::Format::eR32Uint, vk::ImageUsageFlagBits::eStorage) {
+  const auto positions = gpu::download<glm::vec4>(device, map.position);
+  const auto faces = gpu::download<glm::vec4>(device, map.face_normal);
+  const auto valid = valid_texels(positions, map.size);
+  const auto bodies = body_of_triangles(scene);
+  texels = static_cast<std::uint32_t>(valid.size());
+  for (const auto texel : valid)
+    places_.push_back({glm::vec3(positions[texel]), bodies[static_cast<std::size_t>(faces[texel].a)]});
+  // Two values are not texels: a miss, and a link that no pixel tells.
+  bits = texels + 1 <= std::numeric_limits<std::uint16_t>::max() && device.summary().storage_16_bit ? 16 : 32;
+
+  const std::uint64_t a_pair = std::uint64_t{texels} * bits / 8, all = a_pair * pairs;
+  const auto memory = device.summary().memory;
+  if (static_cast<double>(all) > most_of_memory * static_cast<double>(memory))
+    throw std::runtime_error("the links of " + std::to_string(texels) + " texels in " +
+                             std::to_string(2 * pairs) + " directions take " + std::to_string(all >> 20) +
+                             " MiB, and " + device.summary().name + " has " + std::to_string(memory >> 20) +
+                             " MiB; try a smaller --size or --psf, or --method thesis, which keeps none");
+  const auto fit = std::max<std::uint64_t>(2, device.summary().max_storage_buffer / (2 * a_pair) * 2);
+  if (2 * a_pair > device.summary().max_storage_buffer)
+    throw std::runtime_error(
+        "the links of one pair of directions do not fit into one buffer; try a smaller --size");
+  texel_of =
+      gpu::upload<std::uint32_t>(device, "lightfield/texel_of", valid, vk::BufferUsageFlagBits::eStorageBuffer);
+  number = numbers(device, map, valid);
+  for (std::uint32_t first = 0; first < pairs; first += static_cast<std::uint32_t>(fit)) {
+    const auto count = std::min(static_cast<std::uint32_t>(fit), pairs - first);
+    chunks.push_back({first, count,
+                      gpu::Buffer(device, "lightfield/links " + std::to_string(chunks.size()), a_pair * count,
+                                  vk::BufferUsageFlagBits::eStorageBuffer)});
+  }
+}
+
+std::vector<TileBounds> LinkTable::bounds(const std::vector<glm::vec3>& offsets) const {
+  std::vector<TileBounds> found;
+  for (std::uint32_t first = 0; first < texels; first += shaders::TILE) {
+    const auto end = std::min(first + shaders::TILE, texels);
+    glm::vec3 low(std::numeric_limits<float>::max()), high(std::numeric_limits<float>::lowest());
+    for (std::uint32_t index = first; index < end; ++index) {
+      const glm::vec3 place = places_[index].at_rest + offsets[places_[index].body];
+      low = glm::min(low, place);
+      high = glm::max(high, place);
+    }
+    found.push_back({(low + high) / 2.0f, glm::distance(low, high) / 2});
+  }
+  return found;
+}
+
+}  // namespace lichtveld::lightfield

@@ -1,0 +1,48 @@
+// The links: for each antipodal pair of directions and each valid texel the number of the texel that it sees,
+// of the two directions along the one that it receives. Texels are numbered in blocks of the atlas, so that a
+// tile of consecutive numbers lies together on a surface.
+#pragma once
+
+#include <vector>
+
+#include "lichtveld/scene/scene.hpp"
+#include "light_map.hpp"
+#include "shared.h"
+
+namespace lichtveld::lightfield {
+
+// A tile's texels lie in this sphere, bodies at their places [m].
+struct TileBounds {
+  glm::vec3 centre;
+  float radius;
+};
+
+struct LinkTable {
+  // `map` holds the geometry texture with every body at rest. Throws std::runtime_error if the links would take
+  // more than the device has.
+  LinkTable(const gpu::Device& device, const scene::Scene& scene, const LightMap& map, std::uint32_t pairs);
+
+  // Links of consecutive pairs, an even number, as many as one buffer may hold.
+  struct Chunk {
+    std::uint32_t first_pair, pairs;
+    gpu::Buffer links;
+  };
+
+  std::uint32_t texels = 0;  // valid ones
+  std::uint32_t bits = 16;   // of a link
+  std::vector<Chunk> chunks;
+  gpu::Buffer texel_of;  // uint: the atlas texel of each number
+  gpu::Image number;     // uint: the number of each atlas texel's source; `texels` outside charts and gutters
+
+  std::uint32_t tiles() const { return (texels + shaders::TILE - 1) / shaders::TILE; }
+  std::vector<TileBounds> bounds(const std::vector<glm::vec3>& offsets) const;
+
+ private:
+  struct Texel {
+    glm::vec3 at_rest;  // [m]
+    std::uint32_t body;
+  };
+  std::vector<Texel> places_;
+};
+
+}  // namespace lichtveld::lightfield

@@ -1,0 +1,290 @@
+#include "lichtveld/lightfield/links.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <bit>
+#include <limits>
+
+#include "brdf.hpp"
+#include "convergence.hpp"
+#include "gather.hpp"
+#include "geometry_texture.hpp"
+#include "route_links.hpp"
+#include "tone_map.hpp"
+
+namespace lichtveld::lightfield {
+
+namespace {
+
+// Where the bound of `auto` cannot be met (an albedo of 1 bounds nothing), it ends here.
+constexpr std::uint32_t most_bounces = 256;
+// `auto` ends when the bound on what is missing falls below this share of the mean.
+constexpr double converged = 1e-3;
+
+// Bounces without progress after which the bound is as low as it gets.
+constexpr std::uint32_t patience = 8;
+
+// Radiance is packed into numbers up to 65408. Its highest is bounded by Le / (1 - albedo), but a bound that
+// takes more than this many times Le is hardly reached by any scene, and would cost the dark ones their digits.
+constexpr float most_gain = 1e4f;
+constexpr float packing_limit = 60000;
+
+struct Brightest {
+  float emission = 0, albedo = 0;
+};
+
+Brightest brightest(const gpu::Device& device, const LightMap& map) {
+  Brightest found;
+  for (const auto& e : gpu::download<glm::vec4>(device, map.emission))
+    found.emission = std::max({found.emission, e.r, e.g, e.b});
+  for (const auto& a : gpu::download<glm::vec4>(device, map.albedo))
+    found.albedo = std::max({found.albedo, a.r, a.g, a.b});
+  return found;
+}
+
+float radiance_scale(const Brightest& of) {
+  const float gain = of.albedo < 1 ? std::min(1 / (1 - of.albedo), most_gain) : most_gain;
+  return of.emission > 0 ? packing_limit / (of.emission * gain) : 1;
+}
+
+// One pixel's list holds the layers of both directions of a pair.
+std::uint32_t capacity_for(std::uint32_t layers) {
+  return std::bit_ceil(2 * layers);
+}
+
+bool same(const scene::Sphere& a, const scene::Sphere& b) {
+  return a.centre == b.centre && a.radius == b.radius;
+}
+
+scene::Box moved(const scene::Box& box, const glm::vec3& by) {
+  return {box.min + by, box.max + by};
+}
+
+// Everything that depends on how many layers a pixel's list holds.
+struct Layered {
+  Layered(const gpu::Device& device, const Settings& settings, const LinkTable& table, std::uint32_t capacity)
+      : store(device, settings, capacity), route(device, store, table) {}
+  LinkStore store;
+  RouteLinks route;
+};
+
+}  // namespace
+
+struct Links::Parts {
+  Parts(const gpu::Device& device, const scene::Scene& scene, const Settings& settings)
+      : device(device),
+        settings(settings),
+        psfs(directions(settings.psf, settings.weights, settings.seed)),
+        geometry(device, scene),
+        map(device, settings.size),
+        geometry_texture(device),
+        brdf(device),
+        tone_map(device),
+        counters(device, "lightfield/counters", sizeof(shaders::Counters),
+                 vk::BufferUsageFlagBits::eStorageBuffer, gpu::Memory::host) {
+    place(at_rest());
+    brightest_of_scene = brightest(device, map);
+    table = std::make_unique<LinkTable>(device, scene, map, pairs());
+    gather = std::make_unique<Gather>(device, *table, psfs, radiance_scale(brightest_of_scene));
+    layered = std::make_unique<Layered>(device, settings, *table, capacity_for(settings.layers));
+  }
+
+  const gpu::Device& device;
+  const Settings settings;
+  const std::vector<Direction> psfs;
+  gpu::PassTimes times;
+  Geometry geometry;
+  LightMap map;
+  GeometryTexture geometry_texture;
+  Brdf brdf;
+  ToneMap tone_map;
+  gpu::Buffer counters;
+  Brightest brightest_of_scene;
+  std::unique_ptr<LinkTable> table;
+  std::unique_ptr<Gather> gather;
+  std::unique_ptr<Layered> layered;
+  std::vector<glm::vec3> offsets;  // of the bodies as they are linked; empty before the first time
+  bool lit = false;                // there is light to start from
+  Solution solution;               // of the last solve or update
+
+  std::uint32_t pairs() const { return settings.psf / 2; }
+  std::vector<glm::vec3> at_rest() const { return std::vector(geometry.scene.bodies.size(), glm::vec3(0)); }
+  void place(const std::vector<glm::vec3>& to);
+  void link(const std::vector<glm::vec3>& to);
+  std::vector<shaders::Region> to_link(const std::vector<glm::vec3>& to, bool all) const;
+  void route(const std::vector<shaders::Region>& regions);
+  void start();
+  void bounce();
+  void converge();
+  void present();
+};
+
+Links::Links(const gpu::Device& device, const scene::Scene& scene, const Settings& settings) {
+  check_on(device, settings);
+  parts_ = std::make_unique<Parts>(device, scene, settings);
+}
+
+Links::~Links() = default;
+
+Solution Links::solve(const std::vector<glm::vec3>& offsets) {
+  Parts& parts = *parts_;
+  parts.link(offsets);
+  Solution& solution = parts.solution;
+  solution.bounces = 0;
+  if (const auto wanted = parts.settings.bounces) {
+    parts.start();
+    while (solution.bounces < *wanted) parts.bounce();
+  } else {
+    if (!parts.lit) parts.start();
+    parts.converge();
+    if (solution.bounces == most_bounces)
+      spdlog::warn("still {:.2g} of the mean may be missing after {} bounces: an albedo near 1 bounds nothing",
+                   solution.residual, solution.bounces);
+  }
+  solution.error_estimate = split_half_error(parts.device, parts.map);
+  parts.present();
+  return solution;
+}
+
+Solution Links::update(const std::vector<glm::vec3>& offsets, std::uint32_t bounces) {
+  Parts& parts = *parts_;
+  parts.link(offsets);
+  Solution& solution = parts.solution;
+  solution.bounces = 0;
+  if (!parts.lit) parts.start();
+  do parts.bounce();
+  while (solution.residual >= converged && solution.bounces < bounces);
+  parts.present();
+  return solution;
+}
+
+std::vector<glm::vec4> Links::irradiance() {
+  return gpu::download<glm::vec4>(parts_->device, parts_->map.total_irradiance);
+}
+
+std::vector<std::uint8_t> Links::presented() {
+  return download_presented(parts_->device, parts_->map);
+}
+
+const gpu::PassTimes& Links::times() const {
+  return parts_->times;
+}
+
+void Links::Parts::place(const std::vector<glm::vec3>& to) {
+  geometry.place(to, settings.raster());
+  gpu::Frame frame(device, times);
+  frame.clear("route_links", map.cover, {});
+  geometry_texture.record(frame, geometry, map);
+  frame.submit_and_wait();
+}
+
+// Brings the links to where the bodies are.
+void Links::Parts::link(const std::vector<glm::vec3>& to) {
+  if (to == offsets) return;
+  const auto sphere_before = geometry.sphere;
+  place(to);
+  // All views are scaled by the scene's sphere; if that changes, so does every raster.
+  const bool all = offsets.empty() || !same(geometry.sphere, sphere_before);
+  if (all) {
+    solution.rays = std::uint64_t{table->texels} * pairs();
+    solution.misses = solution.rays_unknown = solution.overflow_pixels = 0;
+    solution.texels_valid = table->texels;
+  }
+  const auto regions = to_link(to, all);
+  offsets.clear();  // should this fail half-way, nothing is known
+  route(regions);
+  offsets = to;
+}
+
+std::vector<shaders::Region> Links::Parts::to_link(const std::vector<glm::vec3>& to, bool all) const {
+  const auto pixels = settings.raster();
+  std::vector<shaders::Region> regions;
+  for (std::uint32_t pair = 0; pair < pairs(); ++pair) {
+    const auto view = psf_view(psfs[pair], geometry.sphere, pixels);
+    if (all)
+      regions.push_back(whole(view, pair, pixels));
+    else
+      for (std::size_t body = 1; body < to.size(); ++body)
+        if (to[body] != offsets[body]) {
+          const auto& box = geometry.scene.bodies[body].box;
+          regions.push_back(changed(view, pair, pixels, moved(box, offsets[body]), moved(box, to[body])));
+        }
+  }
+  return regions;
+}
+
+void Links::Parts::route(const std::vector<shaders::Region>& regions) {
+  const auto pixels = settings.raster();
+  const auto tiles = table->bounds(geometry.shifts);
+  auto batches = pack(regions, layered->store.extent, pixels, tiles);
+  for (std::size_t batch = 0; batch < batches.size();) {
+    auto& counted = counters.as<shaders::Counters>().front();
+    counted = {
+        .rays = 0, .misses = 0, .unknown = 0, .overflow_pixels = 0, .layers_max = solution.depth_layers_max};
+    gpu::Frame frame(device, times);
+    layered->route.record(frame, batches[batch], geometry, map, *table, layered->store, pixels, settings.layers,
+                          counters);
+    frame.to_host(counters);
+    frame.submit_and_wait();
+    solution.overflow_pixels += counted.overflow_pixels;
+    solution.depth_layers_max = counted.layers_max;
+    if (counted.layers_max > layered->store.capacity) {
+      if (counted.layers_max > 2 * most_layers)
+        throw std::runtime_error("a pixel of a pair of directions has " + std::to_string(counted.layers_max) +
+                                 " layers, more than the " + std::to_string(2 * most_layers) +
+                                 " that can be kept; try fewer surfaces behind each other");
+      spdlog::warn("{} pixels have more than {} layers, up to {}: room is made for all of them",
+                   solution.overflow_pixels, settings.layers, counted.layers_max);
+      layered.reset();  // first, so that both need not fit
+      layered = std::make_unique<Layered>(device, settings, *table, std::bit_ceil(counted.layers_max));
+      batches = pack(regions, layered->store.extent, pixels, tiles);
+      batch = 0;
+      continue;
+    }
+    solution.misses += counted.misses;
+    solution.rays_unknown += counted.unknown;
+    ++batch;
+  }
+}
+
+void Links::Parts::start() {
+  gpu::Frame frame(device, times);
+  gather->start(frame, map, *table);
+  frame.submit_and_wait();
+  lit = true;
+}
+
+void Links::Parts::bounce() {
+  gpu::Frame frame(device, times);
+  gather->bounce(frame, map, *table);
+  frame.submit_and_wait();
+  ++solution.bounces;
+  const auto change = gather->change(*table);
+  // Convergence's bound, from what the bounce itself has measured.
+  solution.residual = change.most == 0 ? 0
+                      : brightest_of_scene.albedo >= 1
+                          ? std::numeric_limits<double>::infinity()
+                          : change.most / (1 - brightest_of_scene.albedo) / change.mean;
+}
+
+// Until the bound is met, or falls no more: with few directions the packing's last digits may go on flickering by more.
+void Links::Parts::converge() {
+  double least = std::numeric_limits<double>::infinity();
+  std::uint32_t since = 0;
+  do {
+    bounce();
+    since = solution.residual < least ? 0 : since + 1;
+    least = std::min(least, solution.residual);
+  } while (solution.residual >= converged && since < patience && solution.bounces < most_bounces);
+}
+
+void Links::Parts::present() {
+  gpu::Frame frame(device, times);
+  brdf.record(frame, map);
+  geometry_texture.find_shown(frame, map);
+  tone_map.record(frame, map);
+  frame.submit_and_wait();
+}
+
+}  // namespace lichtveld::lightfield

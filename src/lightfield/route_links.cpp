@@ -1,0 +1,139 @@
+#include "route_links.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstring>
+
+#include "shaders/emit_links.frag.h"
+#include "shaders/emit_links.vert.h"
+#include "shaders/route_links_16.comp.h"
+#include "shaders/route_links_32.comp.h"
+
+namespace lichtveld::lightfield {
+
+namespace {
+
+using gpu::Kind;
+
+// A store of this size holds what a moved cube changes in 384 directions at 256 pixels, and is cleared in a
+// fraction of a millisecond [bytes].
+constexpr std::uint64_t usual_store = 64 << 20;
+constexpr std::uint32_t widest_store = 4096;  // [pixels]; every device renders that
+
+StoreExtent store_extent(const gpu::Device& device, std::uint32_t pixels, std::uint32_t capacity) {
+  const std::uint64_t a_pixel = std::uint64_t{capacity} * 2 * sizeof(std::uint32_t),
+                      a_raster = std::uint64_t{pixels} * pixels * a_pixel;
+  if (a_raster > device.summary().max_storage_buffer)
+    throw std::runtime_error("an A-buffer of " + std::to_string(capacity) + " layers at " +
+                             std::to_string(pixels) + " pixels a side takes " + std::to_string(a_raster >> 20) +
+                             " MiB, more than the device's " +
+                             std::to_string(device.summary().max_storage_buffer >> 20) +
+                             " MiB for one buffer; try a smaller --psf-size or --size");
+  const auto rasters = static_cast<std::uint32_t>(std::max<std::uint64_t>(1, usual_store / a_raster));
+  const std::uint32_t columns = std::clamp(widest_store / pixels, 1u, rasters);
+  return {columns * pixels, std::max(1u, rasters / columns) * pixels};
+}
+
+template <typename T>
+void put(const gpu::Device& device, gpu::Buffer& buffer, const std::vector<T>& contents) {
+  const auto bytes = contents.size() * sizeof(T);
+  if (bytes > buffer.size())
+    buffer = gpu::Buffer(device, buffer.name(), 2 * bytes, vk::BufferUsageFlagBits::eStorageBuffer,
+                         gpu::Memory::host);
+  std::memcpy(buffer.bytes().data(), contents.data(), bytes);
+}
+
+gpu::Buffer host_buffer(const gpu::Device& device, const char* name) {
+  return {device, name, sizeof(shaders::Region), vk::BufferUsageFlagBits::eStorageBuffer, gpu::Memory::host};
+}
+
+}  // namespace
+
+LinkStore::LinkStore(const gpu::Device& device, const Settings& settings, std::uint32_t capacity)
+    : extent(store_extent(device, settings.raster(), capacity)),
+      capacity(capacity),
+      filled(device, "lightfield/link_layers_filled",
+             vk::DeviceSize{extent.width} * extent.height * sizeof(std::uint32_t),
+             vk::BufferUsageFlagBits::eStorageBuffer | vk::BufferUsageFlagBits::eTransferDst),
+      layers(device, "lightfield/link_layers",
+             vk::DeviceSize{extent.width} * extent.height * capacity * 2 * sizeof(std::uint32_t),
+             vk::BufferUsageFlagBits::eStorageBuffer) {}
+
+RouteLinks::RouteLinks(const gpu::Device& device, const LinkStore& store, const LinkTable& table)
+    : device_(device),
+      route_(device, "route_links",
+             table.bits == 16 ? gpu::Spirv(route_links_16_comp) : gpu::Spirv(route_links_32_comp),
+             {.kinds = {Kind::storage_buffer, Kind::storage_buffer, Kind::storage_buffer, Kind::storage_buffer,
+                        Kind::storage_buffer, Kind::storage_image, Kind::storage_image, Kind::storage_image,
+                        Kind::storage_buffer, Kind::storage_buffer, Kind::storage_buffer, Kind::storage_buffer},
+              .push_bytes = sizeof(shaders::RouteLinksConstants),
+              .specialisation = {store.capacity}}),
+      regions_(host_buffer(device, "lightfield/regions")),
+      jobs_(host_buffer(device, "lightfield/jobs")) {
+  for (const std::uint32_t double_sided : {0u, 1u})
+    draw_.emplace_back(
+        device, "emit_links", emit_links_vert, emit_links_frag,
+        gpu::Interface{.kinds = {Kind::storage_buffer, Kind::storage_buffer, Kind::storage_image,
+                                 Kind::storage_buffer, Kind::storage_buffer, Kind::storage_buffer},
+                       .push_bytes = sizeof(shaders::EmitLinksConstants),
+                       .specialisation = {double_sided}},
+        // As emit_radiance: what faces the direction of travel is seen from its front.
+        gpu::GraphicsState{.vertex_stride = sizeof(scene::Vertex),
+                           .attributes = {{0, vk::Format::eR32G32B32Sfloat, offsetof(scene::Vertex, position)},
+                                          {2, vk::Format::eR32G32Sfloat, offsetof(scene::Vertex, atlas)},
+                                          {4, vk::Format::eR32Uint, offsetof(scene::Vertex, body)}},
+                           .front = vk::FrontFace::eClockwise});
+}
+
+void RouteLinks::record(gpu::Frame& frame, const RegionBatch& batch, const Geometry& geometry,
+                        const LightMap& map, const LinkTable& table, const LinkStore& store,
+                        std::uint32_t pixels, std::uint32_t limit, const gpu::Buffer& counters) {
+  put(device_, regions_, batch.regions);
+  put(device_, jobs_, batch.jobs);
+  frame.clear("emit_links", store.filled);
+  const std::vector bindings = {gpu::reads(geometry.offsets), gpu::reads(regions_),
+                                gpu::reads(table.number),     gpu::writes(store.filled),
+                                gpu::writes(store.layers),    gpu::writes(counters)};
+  const shaders::EmitLinksConstants emit{.size = pixels,
+                                         .store_width = store.extent.width,
+                                         .store_height = store.extent.height,
+                                         .capacity = store.capacity,
+                                         .limit = limit};
+  const auto one_sided = geometry.scene.one_sided_indices;
+  const auto all = static_cast<std::uint32_t>(geometry.scene.indices.size());
+  const auto instances = static_cast<std::uint32_t>(batch.regions.size());
+  frame.render("emit_links", {.extent = {store.extent.width, store.extent.height}}, bindings,
+               {&geometry.vertices, &geometry.indices}, [&](gpu::Draw& draw) {
+                 draw.geometry(geometry.vertices, geometry.indices);
+                 draw.bind(draw_[0], bindings);
+                 draw.push(emit);
+                 draw.indexed(0, one_sided, instances);
+                 if (one_sided == all) return;
+                 draw.bind(draw_[1], bindings);
+                 draw.push(emit);
+                 draw.indexed(one_sided, all - one_sided, instances);
+               });
+  // Jobs stand in the order of their pairs, and so of the table's chunks.
+  auto first = batch.jobs.begin();
+  for (const auto& chunk : table.chunks) {
+    const auto end = std::find_if(first, batch.jobs.end(), [&](const RegionBatch::Job& job) {
+      return static_cast<std::uint32_t>(batch.regions[job.region].place.z) >= chunk.first_pair + chunk.pairs;
+    });
+    if (first == end) continue;
+    frame.compute(
+        route_,
+        {gpu::reads(store.layers), gpu::reads(store.filled), gpu::reads(regions_), gpu::reads(jobs_),
+         gpu::reads(table.texel_of), gpu::reads(map.position), gpu::reads(map.normal),
+         gpu::reads(map.face_normal), gpu::reads(geometry.walls_first), gpu::reads(geometry.walls),
+         gpu::writes(chunk.links), gpu::writes(counters)},
+        shaders::RouteLinksConstants{.size = pixels,
+                                     .store_width = store.extent.width,
+                                     .texels = table.texels,
+                                     .first_pair = chunk.first_pair,
+                                     .first_job = static_cast<std::uint32_t>(first - batch.jobs.begin())},
+        static_cast<std::uint32_t>(end - first), 1);
+    first = end;
+  }
+}
+
+}  // namespace lichtveld::lightfield

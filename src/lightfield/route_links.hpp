@@ -1,0 +1,39 @@
+// route_links: which texel every texel sees along pairs of directions, kept as links. As stencil_routing with a
+// scan (thesis, section 4.5), over an A-buffer that holds texel numbers instead of radiance: emit_links, its
+// first half, draws the scene into parts of many pairs' rasters at once, an instance each, and appends to
+// per-pixel lists; route_links, its second, looks up each texel of the tiles that look into such a part. Reads
+// the geometry; writes the link table. Costs pixels of the parts times layers, and texels of the tiles.
+#pragma once
+
+#include "link_regions.hpp"
+#include "link_table.hpp"
+
+namespace lichtveld::lightfield {
+
+// What a batch's regions see: lists of layers, of texel number and depth each.
+struct LinkStore {
+  LinkStore(const gpu::Device& device, const Settings& settings, std::uint32_t capacity);
+
+  StoreExtent extent;      // [pixels]
+  std::uint32_t capacity;  // layers of a pixel
+  gpu::Buffer filled, layers;
+};
+
+class RouteLinks {
+ public:
+  RouteLinks(const gpu::Device& device, const LinkStore& store, const LinkTable& table);
+
+  // Records one batch into the frame; its regions and jobs stay on the device until the next. `limit` layers
+  // are asked for; pixels with more, misses and unknown rays are added to `counters`.
+  void record(gpu::Frame& frame, const RegionBatch& batch, const Geometry& geometry, const LightMap& map,
+              const LinkTable& table, const LinkStore& store, std::uint32_t pixels, std::uint32_t limit,
+              const gpu::Buffer& counters);
+
+ private:
+  const gpu::Device& device_;
+  std::vector<gpu::GraphicsPipeline> draw_;  // one-sided, double-sided
+  gpu::ComputePipeline route_;
+  gpu::Buffer regions_, jobs_;  // host-visible
+};
+
+}  // namespace lichtveld::lightfield
