@@ -9,32 +9,20 @@ layout(location = 2) in vec2 colour_coordinate;
 
 layout(push_constant) uniform Push { GeometryConstants constants; };
 layout(binding = 0) uniform sampler2D base_colour;
-layout(binding = 1) readonly buffer WallsFirst { uint walls_first[]; };  // of each triangle in walls; one more at the end
-layout(binding = 2) readonly buffer Walls { vec4 walls[]; };             // two ends each [m]
 
 layout(location = 0) out vec4 out_position;     // xyz [m]; a: 1 on valid texels
-layout(location = 1) out vec4 out_normal;       // xyz: shading normal; a: distance to the nearest wall on its plane [m]
+layout(location = 1) out vec4 out_normal;       // shading normal
 layout(location = 2) out vec4 out_face_normal;  // xyz: of the triangle itself, on the same side; a: its number
 layout(location = 3) out vec4 out_albedo;
 layout(location = 4) out vec4 out_emission;  // [W m^-2 sr^-1]
 
-float distance_to_line(vec3 p, vec3 a, vec3 b) {
-  const vec3 edge = b - a;
-  return distance(p, a + edge * clamp(dot(p - a, edge) / max(dot(edge, edge), 1e-30), 0.0, 1.0));
-}
-
 void main() {
   const uint triangle = constants.first_triangle + uint(gl_PrimitiveID);
-  float clearance = NO_WALL;
-  for (uint wall = walls_first[triangle]; wall < walls_first[triangle + 1u]; ++wall) {
-    const float away = distance_to_line(world_position, walls[2u * wall].xyz, walls[2u * wall + 1u].xyz);
-    clearance = clearance == NO_WALL ? away : min(clearance, away);
-  }
   const vec3 face = normalize(cross(dFdx(world_position), dFdy(world_position)));
   const vec3 facing = dot(face, world_normal) < 0.0 ? -face : face;
   const float length_squared = dot(world_normal, world_normal);
   out_position = vec4(world_position, 1.0);
-  out_normal = vec4(length_squared > 0.0 ? world_normal * inversesqrt(length_squared) : facing, clearance);
+  out_normal = vec4(length_squared > 0.0 ? world_normal * inversesqrt(length_squared) : facing, 0.0);
   out_face_normal = vec4(facing, float(triangle));
   out_albedo = vec4(clamp(constants.base_colour.rgb * texture(base_colour, colour_coordinate).rgb, 0.0, 1.0), 1.0);
   out_emission = vec4(constants.emission.rgb, 1.0);

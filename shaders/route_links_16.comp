@@ -6,7 +6,7 @@
 #include "links.glsl"
 
 // Two pairs share a word, so that a bounce loads both at once.
-layout(binding = 10) buffer Table { uint16_t table[]; };
+layout(binding = 9) buffer Table { uint16_t table[]; };
 void put_link(uint pair, uint texel, uint link);
 
 #include "route_links.glsl"

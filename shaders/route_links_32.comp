@@ -5,7 +5,7 @@
 #include "shared.h"
 #include "links.glsl"
 
-layout(binding = 10) buffer Table { uint table[]; };
+layout(binding = 9) buffer Table { uint table[]; };
 void put_link(uint pair, uint texel, uint link);
 
 #include "route_links.glsl"

@@ -36,25 +36,34 @@ bool chart_reaches(ivec2 texel, vec3 p, vec3 away) {
   return true;
 }
 
-// Whether a surface leaves the receiver's plane between p and the place `away` from it: one that rises from it, or any.
-// Within `margin` of a wall [m] the rasteriser may have put a centre on either side.
-bool wall_between(uint triangle, vec3 p, vec3 away, vec3 face, float margin, bool rising_only) {
-  for (uint wall = walls_first[triangle]; wall < walls_first[triangle + 1u]; ++wall) {
-    if (rising_only && walls[2u * wall].w == 0.0) continue;
-    const vec3 a = walls[2u * wall].xyz, edge = walls[2u * wall + 1u].xyz - a;
-    const float width = length(edge);
-    if (width == 0.0) continue;
-    const vec3 along = edge / width, across = cross(face, along);
-    float here = dot(p - a, across), there = here + dot(away, across);
-    if (here < 0.0) {
-      here = -here;
-      there = -there;
-    }
-    const float near = min(margin, 0.5 * here);
-    if (there > near) continue;
-    const float share = there < here ? clamp(here / max(here - there, 1e-30), 0.0, 1.0) : 1.0;
-    const float place = dot(p + share * away - a, along);
-    if (place >= -margin && place <= width + margin) return true;
+// Whether wall `wall` stands between p and the place `away` from it. Within `margin` of a wall [m] the rasteriser may have
+// put a centre on either side.
+bool is_between(uint wall, vec3 p, vec3 away, vec3 face, float margin, bool rising_only) {
+  const vec4 first = walls[2u * wall];
+  if (rising_only && first.w == 0.0) return false;
+  const vec3 a = first.xyz, edge = walls[2u * wall + 1u].xyz - a;
+  const float width = length(edge);
+  if (width == 0.0) return false;
+  const vec3 along = edge / width, across = cross(face, along);
+  float here = dot(p - a, across), there = here + dot(away, across);
+  if (here < 0.0) {
+    here = -here;
+    there = -there;
   }
+  if (there > min(margin, 0.5 * here)) return false;
+  const float share = there < here ? clamp(here / max(here - there, 1e-30), 0.0, 1.0) : 1.0;
+  const float place = dot(p + share * away - a, along);
+  return place >= -margin && place <= width + margin;
+}
+
+// Whether a surface leaves the receiver's plane between p and the place `away` from it: one that rises from it, or any.
+// `near`: the receiver's two nearest walls, and the distances of the first and of the third, as bits [m].
+bool wall_between(uvec4 near, uint triangle, vec3 p, vec3 away, vec3 face, float margin, bool rising_only) {
+  const float reach = length(away) + margin;
+  if (reach < uintBitsToFloat(near.z)) return false;
+  if (is_between(near.x, p, away, face, margin, rising_only)) return true;
+  if (reach < uintBitsToFloat(near.w)) return is_between(near.y, p, away, face, margin, rising_only);
+  for (uint wall = walls_first[triangle]; wall < walls_first[triangle + 1u]; ++wall)
+    if (is_between(wall, p, away, face, margin, rising_only)) return true;
   return false;
 }

@@ -1,18 +1,18 @@
 // Which texel each texel sees along a pair's two directions. Like stencil_routing, but what is found is kept.
-// Included by a shader that declares `table` at binding 10 and put_link(index of the pair in the chunk, texel, link).
+// Included by a shader that declares `table` at binding 9 and put_link(index of the pair in the chunk, texel, link).
 
-layout(local_size_x = TILE) in;
+layout(local_size_x_id = 1) in;  // a tile
 layout(binding = 0) readonly buffer Layers { uvec2 layers[]; };
 layout(binding = 1) readonly buffer Filled { uint filled[]; };
 layout(binding = 2) readonly buffer Regions { Region regions[]; };
-layout(binding = 3) readonly buffer Jobs { uvec2 jobs[]; };  // region and tile of each workgroup
-layout(binding = 4) readonly buffer TexelOf { uint texel_of[]; };  // atlas texel of each valid one
-layout(binding = 5, rgba32f) uniform readonly image2D position;
-layout(binding = 6, rgba32f) uniform readonly image2D normal;
-layout(binding = 7, rgba32f) uniform readonly image2D face_normal;
-layout(binding = 8) readonly buffer WallsFirst { uint walls_first[]; };
-layout(binding = 9) readonly buffer Walls { vec4 walls[]; };
-layout(binding = 11) buffer Counted { Counters counters; };
+layout(binding = 3) readonly buffer Jobs { RouteJob jobs[]; };  // of each workgroup
+layout(binding = 11) readonly buffer Tiles { uint tiles[]; };
+layout(binding = 4) readonly buffer Receivers { Receiver receivers[]; };
+layout(binding = 5) readonly buffer Positions { vec4 positions[]; };  // xyz [m]; w: the atlas texel
+layout(binding = 6, rgba32f) uniform readonly image2D position;
+layout(binding = 7) readonly buffer WallsFirst { uint walls_first[]; };
+layout(binding = 8) readonly buffer Walls { vec4 walls[]; };
+layout(binding = 10) buffer Counted { Counters counters; };
 layout(push_constant) uniform Push { RouteLinksConstants constants; };
 
 layout(constant_id = 0) const uint CAPACITY = 16;
@@ -36,14 +36,10 @@ int nearest_in_front(uint pixel, float sign, float limit) {
   return found;
 }
 
-void main() {
-  const uvec2 job = jobs[constants.first_job + gl_WorkGroupID.x];
-  const uint me = job.y * TILE + gl_LocalInvocationID.x;
+void route(uint me, Region region) {
   if (me >= constants.texels) return;
-  const Region region = regions[job.x];
   const PsfView view = region.view;
-  const ivec2 texel = ivec2(texel_of[me] % uint(imageSize(position).x), texel_of[me] / uint(imageSize(position).x));
-  const vec4 p = imageLoad(position, texel);
+  const vec4 place = positions[me], p = vec4(place.xyz, 1.0);
   const float size = float(constants.size), pixel_width = 2.0 / size;
   const vec2 projected = vec2(dot(view.right, p), dot(view.up, p));
   const vec2 in_pixels = (projected * 0.5 + 0.5) * size;
@@ -53,8 +49,8 @@ void main() {
   const ivec2 low = clamp(first, ivec2(0), ivec2(size) - 1), high = clamp(first + 1, ivec2(0), ivec2(size) - 1);
   if (any(lessThan(low, region.rect.xy)) || any(greaterThanEqual(high, region.rect.xy + region.rect.zw))) return;
 
-  const vec4 normal_and_clearance = imageLoad(normal, texel), face_and_triangle = imageLoad(face_normal, texel);
-  const vec3 n = normal_and_clearance.xyz, face = face_and_triangle.xyz;
+  const Receiver receiver = receivers[me];
+  const vec3 n = receiver.normal.xyz, face = receiver.face_and_triangle.xyz;
   // Of the pair the direction whose light it receives: `sign` times the region's.
   const float sign = dot(face, view.direction.xyz) > 0.0 ? -1.0 : 1.0;
   const vec3 travel = sign * view.direction.xyz;
@@ -81,17 +77,25 @@ void main() {
     const vec2 shift = (vec2(pixel) + 0.5) * pixel_width - 1.0 - projected;
     const float own_depth = receiver_depth(shift, depth, slope);
     const vec3 away = (right * shift.x + up * shift.y + travel * (own_depth - depth)) / scale;
-    if (normal_and_clearance.a != NO_WALL && length(away) + margin >= normal_and_clearance.a &&
-        wall_between(uint(face_and_triangle.a), p.xyz, away, face, margin, choice >= 4u))
+    if (wall_between(receiver.near, uint(receiver.face_and_triangle.a), p.xyz, away, face, margin, choice >= 4u))
       continue;
     known = true;
     const ivec2 stored = pixel - region.rect.xy + region.place.xy;
     link = nearest_in_front(uint(stored.y) * constants.store_width + uint(stored.x), sign, own_depth + tolerance);
-    if (link >= 0 || chart_reaches(texel, p.xyz, away)) break;
+    if (link >= 0) break;
+    const uint texel = uint(place.w), width = uint(imageSize(position).x);
+    if (chart_reaches(ivec2(texel % width, texel / width), p.xyz, away)) break;
   }
   put_link(pair, me, link >= 0 ? uint(link) : known ? MISS(constants.texels) : UNKNOWN(constants.texels));
   if (link < 0) {
     if (known) atomicAdd(counters.misses, 1u);
     else atomicAdd(counters.unknown, 1u);
   }
+}
+
+void main() {
+  const RouteJob job = jobs[constants.first_job + gl_WorkGroupID.x];
+  const Region region = regions[job.region];
+  for (uint entry = job.first; entry < job.end; ++entry)
+    route(tiles[entry] * gl_WorkGroupSize.x + gl_LocalInvocationID.x, region);
 }

@@ -9,7 +9,8 @@ layout(binding = 5, rgba32f) uniform writeonly image2D psf_irradiance;  // rgb: 
 layout(binding = 6, r32f) uniform image2D cover;  // weights [sr] of rays that start in contact, less all others
 layout(binding = 7) readonly buffer WallsFirst { uint walls_first[]; };  // of each triangle in walls; one more at the end
 layout(binding = 8) readonly buffer Walls { vec4 walls[]; };             // two ends each [m]
-layout(binding = 9) buffer Counted { Counters counters; };
+layout(binding = 9, rgba32ui) uniform readonly uimage2D near_walls;
+layout(binding = 10) buffer Counted { Counters counters; };
 layout(push_constant) uniform Push { RoutingConstants constants; };
 
 #include "layer_order.glsl"
@@ -20,8 +21,7 @@ void main() {
   if (any(greaterThanEqual(texel, imageSize(position)))) return;
   const vec4 p = imageLoad(position, texel);
   const PsfView view = constants.view;
-  const vec4 normal_and_clearance = imageLoad(normal, texel);
-  const vec3 n = normal_and_clearance.xyz;
+  const vec3 n = imageLoad(normal, texel).xyz;
   const vec4 face_and_triangle = imageLoad(face_normal, texel);
   const vec3 face = face_and_triangle.xyz;
   const float cosine = -dot(n, view.direction.xyz);
@@ -42,6 +42,7 @@ void main() {
   const vec2 within = in_pixels - vec2(nearest) - 0.5;  // of the nearest centre
   const float weight = cosine * view.direction.w;
   const float tolerance = receiver_tolerance(slope, pixel_width);
+  const uvec4 near = imageLoad(near_walls, texel);
   const uint triangle = uint(face_and_triangle.a);
   const float margin = 2.0 * SUBPIXEL * pixel_width / (face_cosine * length(view.along.xyz));
   bool known = false, in_contact = false;
@@ -59,9 +60,7 @@ void main() {
     const float own_depth = receiver_depth(centre - projected, depth, slope);
     const vec3 away = (right * (centre.x - projected.x) + up * (centre.y - projected.y) +
                        view.direction.xyz * (own_depth - depth)) / length(view.along.xyz);
-    if (normal_and_clearance.a != NO_WALL && length(away) + margin >= normal_and_clearance.a &&
-        wall_between(triangle, p.xyz, away, face, margin, choice >= 4u))
-      continue;
+    if (wall_between(near, triangle, p.xyz, away, face, margin, choice >= 4u)) continue;
     known = true;
     const uint layer = last_in_front(pixel, constants.size, own_depth + tolerance);
     if (layer < LAYERS) {

@@ -8,6 +8,7 @@
 #include <glm/glm.hpp>
 namespace lichtveld::shaders {
 using glm::ivec4;
+using glm::uvec4;
 using glm::vec4;
 using uint = std::uint32_t;
 #endif
@@ -28,8 +29,8 @@ const int GUTTER = 2;
 // them. Wider gaps are gaps.
 const float CONTACT = 0.125;
 
-// Distance to the nearest wall of a texel that has none.
-const float NO_WALL = -1.0;
+// Farther than any wall [m].
+const float FAR = 1e30;
 
 // Bins of the log-luminance histogram, over [2^LOG_LUMINANCE_MIN, 2^LOG_LUMINANCE_MAX): radiance from 1e-6 to 1e6 fits.
 // Bin 0 holds what is darker, black included.
@@ -81,14 +82,27 @@ struct LayerConstants {
 
 // --method links. A pair is a direction and its antipode, which share one A-buffer.
 
-// Texels that are routed together, and invocations of a workgroup over them.
+// Invocations of a workgroup over numbered texels.
 const uint TILE = 64;
+
+// A valid texel as a receiver, where its body is.
+struct Receiver {
+  uvec4 near;              // as LightMap::near_walls
+  vec4 face_and_triangle;  // as LightMap::face_normal
+  vec4 normal;             // xyz: unit
+};
 
 // Part of a pair's raster, and where it lies in the store that many parts share.
 struct Region {
   PsfView view;
   ivec4 rect;   // first column and row, columns, rows, of the pair's raster [pixels]
   ivec4 place;  // xy: first column and row in the store [pixels]; z: the pair
+};
+
+// Tiles of texels that look into a region: a workgroup's work.
+struct RouteJob {
+  uint region;
+  uint first, end;  // in the list of tiles
 };
 
 struct EmitLinksConstants {
@@ -111,6 +125,13 @@ struct GatherConstants {
   uint pairs;       // even
   uint first_pair;  // of the chunk, among all
   uint add;         // 1: to the sum that is there
+};
+
+struct CoverConstants {
+  uint texels;
+  uint pairs;     // of the table's first chunk
+  uint votes;     // of these pairs
+  float contact;  // as far above a texel's plane lies on it [m]
 };
 
 struct BounceConstants {

@@ -51,8 +51,10 @@ UpdateOptions walks_of(const BenchOptions& options) {
                       .settings = {},
                       .truth_spp = std::max(2u, sweep.truth_spp / fewer_paths_after_walks)};
   for (const auto size : sweep.sizes)
-    for (const auto psf : options.update_psfs)
+    for (const auto psf : options.update_psfs) {
       walks.settings.push_back(curve_settings(sweep.abuffers.back(), size, psf, sweep));
+      walks.settings.back().bounces.reset();  // players see the light of all bounces
+    }
   return walks;
 }
 

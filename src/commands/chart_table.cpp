@@ -22,6 +22,7 @@ std::uint32_t pixels_of(const lightfield::Settings& settings) {
 
 std::string name_of_method(const BenchRow& row) {
   if (row.method == Method::reference) return "path tracing";
+  if (row.method == Method::links) return name_of(row.method);
   return fmt::format("{}, {} ({})", name_of(row.method), name_of(row.settings.abuffer),
                      name_of(row.settings.sort));
 }
@@ -50,9 +51,9 @@ std::string chart_csv(const std::vector<BenchRow>& rows) {
       "weights,error_estimate,spp\n";
   for (const auto& row : rows) {
     const auto& s = row.settings;
-    const bool traced = row.method == Method::reference;
+    const bool traced = row.method == Method::reference, sorted = row.method == Method::thesis;
     csv += fmt::format("{},{},{},{},{},{},{},{:.4f},{:.4f},{},{},{},{},{},{},{},{}\n", csv_cell(row.scene),
-                       name_of(row.method), traced ? "" : name_of(s.abuffer), traced ? "" : name_of(s.sort),
+                       name_of(row.method), sorted ? name_of(s.abuffer) : "", sorted ? name_of(s.sort) : "",
                        s.size, traced ? "" : std::to_string(s.psf), name_of_bounces(s), median(row.total_ms),
                        *std::min_element(row.total_ms.begin(), row.total_ms.end()), cell(row.error.rel_rmse),
                        cell(row.error.rel_p99), cell(row.error.rel_max), cell(row.error.bias),

@@ -33,6 +33,12 @@ class PlaceInbox {
     return stopped_;
   }
 
+  // Whether take() would return at once.
+  bool has_news() const {
+    const std::lock_guard lock(mutex_);
+    return newest_ || stopped_;
+  }
+
   // The newest places, once; empty when none came in time or when stopped.
   std::optional<Places> take(std::chrono::milliseconds patience) {
     std::unique_lock lock(mutex_);

@@ -20,7 +20,7 @@ std::string name_of_variant(const lightfield::Settings& settings) {
 std::vector<Curve> variants_of(const Panel& panel) {
   std::vector<Curve> curves;
   const auto last = std::find_if(panel.rows.rbegin(), panel.rows.rend(),
-                                 [](const BenchRow* row) { return row->method != Method::reference; });
+                                 [](const BenchRow* row) { return row->method == Method::thesis; });
   if (last == panel.rows.rend()) return curves;
   for (const auto* row : panel.rows) {
     if (row->method != (*last)->method || row->settings.abuffer != (*last)->settings.abuffer ||

@@ -4,7 +4,8 @@
 
 #include <array>
 
-#include "lichtveld/lightfield/thesis.hpp"
+#include "lichtveld/scene/collision.hpp"
+#include "solver.hpp"
 
 namespace lichtveld::commands {
 
@@ -18,19 +19,25 @@ struct Quality {
 constexpr std::array<Quality, 6> coarse_to_fine = {
     {{64, 24}, {64, 96}, {128, 96}, {128, 384}, {256, 384}, {256, 1536}}};
 
-std::chrono::duration<double, std::milli> time_of(const gpu::Device& device, const scene::Scene& scene,
+std::chrono::duration<double, std::milli> time_of(Method method, const gpu::Device& device,
+                                                  const scene::Scene& scene,
                                                   const lightfield::Settings& settings) {
-  lightfield::Thesis method(device, scene, settings);
-  const std::vector<glm::vec3> at_rest(scene.bodies.size(), glm::vec3(0));
-  method.solve(at_rest);  // drivers compile on the first use
-  const auto start = std::chrono::steady_clock::now();
-  method.solve(at_rest);
-  return std::chrono::steady_clock::now() - start;
+  const auto solver = make_solver(method, device, scene, settings);
+  std::vector<glm::vec3> offsets(scene.bodies.size(), glm::vec3(0));
+  solver->solve(offsets);
+  std::chrono::duration<double, std::milli> took{};
+  for (const float way : {1.0f, 2.0f}) {  // drivers compile on the first use
+    if (scene.bodies.size() > 1) offsets[1].x = way * scene::step_length(scene);
+    const auto start = std::chrono::steady_clock::now();
+    solver->update(offsets, [](std::uint32_t) { return true; });
+    took = std::chrono::steady_clock::now() - start;
+  }
+  return took;
 }
 
 }  // namespace
 
-lightfield::Settings finest_within(std::chrono::milliseconds budget, const gpu::Device& device,
+lightfield::Settings finest_within(std::chrono::milliseconds budget, Method method, const gpu::Device& device,
                                    const scene::Scene& scene, lightfield::Settings settings,
                                    const std::function<bool()>& stopped) {
   lightfield::Settings finest = settings;
@@ -40,7 +47,7 @@ lightfield::Settings finest_within(std::chrono::milliseconds budget, const gpu::
     if (stopped()) break;
     settings.size = quality.size;
     settings.psf = quality.psf;
-    const auto took = time_of(device, scene, settings);
+    const auto took = time_of(method, device, scene, settings);
     spdlog::info("--size {} --psf {}: {:.0f} ms a map", quality.size, quality.psf, took.count());
     if (took > budget) break;
     finest = settings;

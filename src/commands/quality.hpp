@@ -7,12 +7,14 @@
 #include "lichtveld/gpu/device.hpp"
 #include "lichtveld/lightfield/settings.hpp"
 #include "lichtveld/scene/scene.hpp"
+#include "options.hpp"
 
 namespace lichtveld::commands {
 
-// Times light maps from coarse to fine on this device and returns `settings` with the size and PSFs of the
-// finest one that takes at most `budget`; the coarsest one if none does. Ends early once stopped() is true.
-lightfield::Settings finest_within(std::chrono::milliseconds budget, const gpu::Device& device,
+// Times what a step of the first movable body costs from coarse to fine on this device, by `method`, and
+// returns `settings` with the size and PSFs of the finest one that takes at most `budget`; the coarsest one if
+// none does. Ends early once stopped() is true.
+lightfield::Settings finest_within(std::chrono::milliseconds budget, Method method, const gpu::Device& device,
                                    const scene::Scene& scene, lightfield::Settings settings,
                                    const std::function<bool()>& stopped);
 

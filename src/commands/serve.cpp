@@ -5,13 +5,13 @@
 #include <fstream>
 
 #include "command_list.hpp"
-#include "lichtveld/lightfield/thesis.hpp"
 #include "lichtveld/scene/collision.hpp"
 #include "lichtveld/stream/encoder.hpp"
 #include "lichtveld/stream/hash.hpp"
 #include "options.hpp"
 #include "place_inbox.hpp"
 #include "quality.hpp"
+#include "solver.hpp"
 #include "stop_signals.hpp"
 
 namespace lichtveld::commands {
@@ -22,18 +22,21 @@ using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 using Places = std::vector<stream::Place>;
 
-// Half of what two maps a second allow, because browsers may share the machine.
-constexpr auto budget_a_map = 250ms;
+// What a light map after a step may take: half of what 15 a second allow, because browsers may share the
+// machine.
+constexpr auto budget_a_map = 33ms;
+// Bounces of a light map while nothing moves and light still settles: three such maps and it has, unless a step
+// comes between.
+constexpr std::uint32_t bounces_to_settle = 10;
 constexpr std::size_t cubes_of_players = 2;
 
 struct ServeOptions {
   std::string scene, signaling, token_file, bind;
   double rate = 30;
-  Method method = Method::thesis;
+  Method method = Method::links;
   bool chosen_quality = false;
   gpu::DeviceOptions device;
-  lightfield::Settings settings{
-      .bounces = 2, .abuffer = lightfield::ABuffer::list, .sort = lightfield::Sort::scan};
+  lightfield::Settings settings{.abuffer = lightfield::ABuffer::list, .sort = lightfield::Sort::scan};
 };
 
 std::string read_token(const std::string& file) {
@@ -73,18 +76,29 @@ stream::Place moved(const scene::Scene& scene, std::size_t cube, const Places& p
 
 class RenderLoop {
  public:
-  RenderLoop(const scene::Scene& scene, const gpu::Device& device, const lightfield::Settings& settings)
-      : scene_(scene), size_(settings.size), method_(device, scene, settings) {}
+  RenderLoop(const scene::Scene& scene, const gpu::Device& device, const ServeOptions& options)
+      : scene_(scene),
+        size_(options.settings.size),
+        solver_(make_solver(options.method, device, scene, options.settings)) {}
 
-  void render(const Places& places, stream::Server& server) {
-    method_.solve(offsets_of(scene_, places));
-    server.publish(stream::encode_png(method_.presented(), size_), places);
+  // Publishes the light map with the cubes at these places; false once the light has settled and there was
+  // nothing to publish. A map ends early where enough() says so.
+  bool render(const Places& places, const Solver::Enough& enough, stream::Server& server) {
+    if (settled_ && places == places_) return false;
+    settled_ = solver_->update(offsets_of(scene_, places), enough).settled;
+    places_ = places;
+    server.publish(stream::encode_png(solver_->presented(), size_), places);
+    return true;
   }
+
+  bool settled() const { return settled_; }
 
  private:
   const scene::Scene& scene_;
   std::uint32_t size_;
-  lightfield::Thesis method_;
+  std::unique_ptr<Solver> solver_;
+  Places places_;
+  bool settled_ = false;
 };
 
 void serve(ServeOptions options) {
@@ -97,11 +111,11 @@ void serve(ServeOptions options) {
   const auto token = read_token(options.token_file);
   const gpu::Device device(options.device);
   if (!options.chosen_quality)
-    options.settings =
-        finest_within(budget_a_map, device, scene, options.settings, [&] { return inbox.stopped(); });
+    options.settings = finest_within(budget_a_map, options.method, device, scene, options.settings,
+                                     [&] { return inbox.stopped(); });
   scene::check_atlas(scene, options.settings.size);
 
-  RenderLoop loop(scene, device, options.settings);
+  RenderLoop loop(scene, device, options);
   const Places rest = places_at_rest(scene);
   stream::Server server({.signaling = options.signaling,
                          .token = token,
@@ -111,16 +125,27 @@ void serve(ServeOptions options) {
                          .mover = [&scene](std::size_t cube, const Places& places,
                                            stream::Move move) { return moved(scene, cube, places, move); },
                          .places_changed = [&inbox](const Places& places) { inbox.put(places); }});
-  loop.render(rest, server);
+  Places places = rest;
+  loop.render(
+      places, [](std::uint32_t) { return false; }, server);
   spdlog::info("serving {}: --size {} --psf {} on {}", options.scene, options.settings.size,
                options.settings.psf, device.summary().name);
 
   const std::chrono::duration<double> shortest(1 / options.rate);
   while (!inbox.stopped() && server.refused().empty()) {
-    const auto places = inbox.take(500ms);
-    if (!places) continue;
     const auto start = Clock::now();
-    loop.render(*places, server);
+    auto moved = inbox.take(loop.settled() ? 500ms : 0ms);
+    if (moved)
+      places = std::move(*moved);
+    else if (loop.settled())
+      continue;
+    // After a step one bounce, so that the next step is shown soon; while nothing moves what is left, but no
+    // longer than until somebody moves again.
+    const bool waits = !moved.has_value();
+    loop.render(
+        places,
+        [&](std::uint32_t bounces) { return !waits || bounces >= bounces_to_settle || inbox.has_news(); },
+        server);
     std::this_thread::sleep_until(start + std::chrono::duration_cast<Clock::duration>(shortest));
   }
   if (const auto why = server.refused(); !why.empty()) throw UsageError(why);
@@ -143,10 +168,10 @@ void add_serve(CLI::App& application) {
   command->add_option("--bind", options->bind, "The address that WebRTC binds to (default: every address)");
   command->add_option("--rate", options->rate, "Most light maps a second")->capture_default_str();
   add_quality_options(*command, options->settings);
-  command->get_option("--size")->default_str("the finest that this machine renews twice a second");
+  command->get_option("--size")->default_str("the finest that this machine renews 15 times a second");
   command->get_option("--psf")->default_str("likewise");
   add_bounces_option(*command, options->settings);
-  add_method_option(*command, options->method, {Method::thesis});
+  add_method_option(*command, options->method, {Method::links, Method::thesis});
   add_light_field_options(*command, options->settings);
   add_device_options(*command, options->device);
   command->callback([options, command] {

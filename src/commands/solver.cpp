@@ -15,10 +15,19 @@ class SolverOf : public Solver {
 
   lightfield::Solution solve(const std::vector<glm::vec3>& offsets) override { return method_.solve(offsets); }
   std::vector<glm::vec4> irradiance() override { return method_.irradiance(); }
+  std::vector<std::uint8_t> presented() override { return method_.presented(); }
   const gpu::PassTimes& times() const override { return method_.times(); }
 
- private:
+ protected:
   Of method_;
+};
+
+class LinksSolver : public SolverOf<lightfield::Links> {
+ public:
+  using SolverOf::SolverOf;
+  lightfield::Solution update(const std::vector<glm::vec3>& offsets, const Enough& enough) override {
+    return method_.update(offsets, enough);
+  }
 };
 
 }  // namespace
@@ -34,7 +43,7 @@ std::unique_ptr<Solver> make_solver(Method method, const gpu::Device& device, co
     case Method::thesis:
       return std::make_unique<SolverOf<lightfield::Thesis>>(device, scene, settings);
     case Method::links:
-      return std::make_unique<SolverOf<lightfield::Links>>(device, scene, settings);
+      return std::make_unique<LinksSolver>(device, scene, settings);
     case Method::reference:
       break;
   }

@@ -1,6 +1,7 @@
-// The methods that run on a device, behind one interface, so that bench can line them up.
+// The methods that run on a device, behind one interface: serve and bench take any.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -16,8 +17,16 @@ class Solver {
   // Computes E with body i shifted by offsets[i] [m], one entry a body.
   virtual lightfield::Solution solve(const std::vector<glm::vec3>& offsets) = 0;
 
-  virtual std::vector<glm::vec4> irradiance() = 0;  // after solve()
-  virtual const gpu::PassTimes& times() const = 0;  // since the start
+  // The next light map of a room where things move: as solve(), or, where a method keeps what it knows, with as
+  // many bounces as it takes to settle or until enough(bounces so far).
+  using Enough = std::function<bool(std::uint32_t)>;
+  virtual lightfield::Solution update(const std::vector<glm::vec3>& offsets, const Enough&) {
+    return solve(offsets);
+  }
+
+  virtual std::vector<glm::vec4> irradiance() = 0;    // after solve()
+  virtual std::vector<std::uint8_t> presented() = 0;  // the same, tone-mapped: sRGB RGBA
+  virtual const gpu::PassTimes& times() const = 0;    // since the start
 };
 
 // What bench compares with the reference, the published method first: the others are measured against it.

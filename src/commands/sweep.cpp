@@ -138,6 +138,12 @@ std::vector<BenchRow> rows_of(const std::string& scene, const SweepOptions& opti
       for (const auto size : options.sizes)
         for (const auto psf : options.psfs) {
           Settings settings{.size = size, .psf = psf, .bounces = bounces};
+          if (method == Method::links) {  // has one way to find layers
+            settings = curve_settings(ABuffer::list, size, psf, options);
+            settings.bounces = bounces;
+            add(method, settings, options.psf_sizes.front(), false);
+            continue;
+          }
           settings.weights = options.weights.front();
           for (const auto abuffer : options.abuffers)
             for (const auto sort : sorts_for(abuffer, psf, options)) {

@@ -21,17 +21,31 @@ using Clock = std::chrono::steady_clock;
 // A rest of a step before a wall is no step: the light hardly changes.
 constexpr float least_share_of_a_step = 0.5f;
 constexpr std::uint64_t seed_of_truth = 1;
+// The thesis computes everything afresh, and so takes as long for any step: for seconds each.
+constexpr std::size_t steps_of_thesis = 3;
+
+// As serve has it while things move: the light of further bounces follows in the next steps.
+bool after_one_bounce(std::uint32_t) {
+  return true;
+}
 
 UpdateRow run_walk(const gpu::Device& device, const scene::Scene& scene, UpdateRow row,
                    const std::vector<Places>& places, const reference::Irradiance* truth) {
   const auto solver = make_solver(row.method, device, scene, row.settings);
   solver->solve(Places(scene.bodies.size(), glm::vec3(0)));
-  for (const auto& place : places) {
+  const auto steps = row.method == Method::thesis ? std::min(places.size(), steps_of_thesis) : places.size();
+  const auto before = solver->times();
+  for (std::size_t step = 0; step < steps; ++step) {
     const auto start = Clock::now();
-    solver->solve(place);
+    solver->update(places[step], after_one_bounce);
     row.ms.push_back(std::chrono::duration<double, std::milli>(Clock::now() - start).count());
   }
+  row.passes = solver->times();
+  for (const auto& [name, time] : before) row.passes[name].gpu_ms -= time.gpu_ms;
   if (truth != nullptr) {
+    if (steps == places.size())
+      row.rel_rmse_moving = reference::error_of(solver->irradiance(), truth->texels).rel_rmse;
+    solver->solve(places.back());
     row.rel_rmse = reference::error_of(solver->irradiance(), truth->texels).rel_rmse;
     row.noise_of_truth = reference::expected_rel_rmse(*truth);
   }
@@ -97,12 +111,13 @@ std::vector<UpdateRow> time_updates(const gpu::Device& device, const scene::Scen
 }
 
 std::string updates_csv(const std::vector<UpdateRow>& rows) {
-  std::string csv = "method,size,psf,ms_p50,ms_p95,speedup_vs_thesis,rel_rmse,scene\n";
+  std::string csv = "method,size,psf,ms_p50,ms_p95,speedup_vs_thesis,rel_rmse,scene,steps,rel_rmse_moving\n";
   for (const auto& row : rows)
-    csv += fmt::format("{},{},{},{:.4f},{:.4f},{:.3f},{},{}\n", name_of(row.method), row.settings.size,
+    csv += fmt::format("{},{},{},{:.4f},{:.4f},{:.3f},{},{},{},{}\n", name_of(row.method), row.settings.size,
                        row.settings.psf, median(row.ms), percentile(row.ms, 0.95), row.speedup_vs_thesis,
                        std::isfinite(row.rel_rmse) ? fmt::format("{:.6g}", row.rel_rmse) : "",
-                       csv_cell(row.scene));
+                       csv_cell(row.scene), row.ms.size(),
+                       std::isfinite(row.rel_rmse_moving) ? fmt::format("{:.6g}", row.rel_rmse_moving) : "");
   return csv;
 }
 
@@ -117,7 +132,10 @@ std::string updates_text(const std::vector<UpdateRow>& rows) {
     if (std::isfinite(row.rel_rmse))
       text += fmt::format(", rel_rmse {:.2f} % (reference's noise {:.2f} %)", 100 * row.rel_rmse,
                           100 * row.noise_of_truth);
-    text += "\n";
+    text += "\n   ";
+    for (const auto& [name, time] : row.passes)
+      text += fmt::format(" {} {:.1f}", name, time.gpu_ms / static_cast<double>(row.ms.size()));
+    text += " ms a step\n";
   }
   return text;
 }

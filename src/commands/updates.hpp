@@ -20,9 +20,11 @@ struct UpdateRow {
   std::string scene;
   Method method;
   lightfield::Settings settings;
-  std::vector<double> ms = {};   // of each step's light map
-  double speedup_vs_thesis = 1;  // of the medians
-  double rel_rmse = not_known;   // at the walk's end, against the truth of the scene as it then is
+  std::vector<double> ms = {};         // of each step's light map
+  gpu::PassTimes passes = {};          // of all steps together
+  double rel_rmse_moving = not_known;  // of the last step's, before it has settled
+  double speedup_vs_thesis = 1;        // of the medians
+  double rel_rmse = not_known;         // once it has, against the truth of the scene as it then is
   double noise_of_truth = not_known;
 };
 
@@ -35,7 +37,7 @@ std::vector<UpdateRow> time_updates(const gpu::Device& device, const scene::Scen
                                     const std::string& name, const UpdateOptions& options,
                                     const ReferenceCache& cache);
 
-// method, size, psf, ms_p50, ms_p95, speedup_vs_thesis, rel_rmse, scene
+// method, size, psf, ms_p50, ms_p95, speedup_vs_thesis, rel_rmse, scene, steps, rel_rmse_moving
 std::string updates_csv(const std::vector<UpdateRow>& rows);
 
 // The same to read, a line a row.

@@ -45,7 +45,7 @@ Gather::Gather(const gpu::Device& device, const LinkTable& table, const std::vec
                                          vk::BufferUsageFlagBits::eStorageBuffer)),
       sums_{storage(device, "lightfield/sums 0", table.texels * sizeof(glm::vec4)),
             storage(device, "lightfield/sums 1", table.texels * sizeof(glm::vec4))},
-      changes_(storage(device, "lightfield/changes", table.tiles() * sizeof(glm::vec2), gpu::Memory::host)) {}
+      changes_(storage(device, "lightfield/changes", table.groups() * sizeof(glm::vec2), gpu::Memory::host)) {}
 
 void Gather::start(gpu::Frame& frame, const LightMap& map, const LinkTable& table) const {
   frame.clear("gather", radiance_);
@@ -70,7 +70,7 @@ void Gather::bounce(gpu::Frame& frame, const LightMap& map, const LinkTable& tab
                                              .pairs = last - first,
                                              .first_pair = chunk.first_pair,
                                              .add = add ? 1u : 0u},
-                    table.tiles(), 1);
+                    table.groups(), 1);
       add = true;
     }
   }
@@ -82,7 +82,7 @@ void Gather::end(gpu::Frame& frame, const LightMap& map, const LinkTable& table)
                 {gpu::reads(sums_[0]), gpu::reads(sums_[1]), gpu::reads(table.texel_of), gpu::reads(map.albedo),
                  gpu::reads(map.emission), gpu::writes(map.total_irradiance), gpu::writes(map.half_difference),
                  gpu::writes(radiance_), gpu::writes(changes_)},
-                shaders::BounceConstants{.texels = table.texels, .radiance_scale = scale_}, table.tiles(), 1);
+                shaders::BounceConstants{.texels = table.texels, .radiance_scale = scale_}, table.groups(), 1);
   frame.to_host(changes_);
 }
 

@@ -21,6 +21,8 @@ class Gather {
   void start(gpu::Frame& frame, const LightMap& map, const LinkTable& table) const;
   void bounce(gpu::Frame& frame, const LightMap& map, const LinkTable& table) const;
 
+  const gpu::Buffer& directions() const { return directions_; }  // vec4 a pair: xyz; w: solid angle [sr]
+
   // After a bounce that the frame has waited for.
   struct Change {
     double most;  // largest change of E, any texel and channel [W m^-2]
@@ -37,7 +39,7 @@ class Gather {
   gpu::Buffer radiance_;             // packed; the one after the last texel stays black
   gpu::Buffer directions_;           // vec4 a pair
   std::array<gpu::Buffer, 2> sums_;  // of each half of the directions
-  gpu::Buffer changes_;              // vec2 a tile, host-visible
+  gpu::Buffer changes_;              // vec2 a workgroup, host-visible
 };
 
 }  // namespace lichtveld::lightfield

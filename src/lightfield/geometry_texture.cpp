@@ -5,6 +5,7 @@
 #include "shaders/geometry_texture.frag.h"
 #include "shaders/geometry_texture.vert.h"
 #include "shaders/geometry_texture_gutter.comp.h"
+#include "shaders/geometry_texture_walls.comp.h"
 #include "shared.h"
 
 namespace lichtveld::lightfield {
@@ -16,14 +17,16 @@ constexpr auto rgba32f = vk::Format::eR32G32B32A32Sfloat;
 
 GeometryTexture::GeometryTexture(const gpu::Device& device)
     : draw_(device, "geometry_texture", geometry_texture_vert, geometry_texture_frag,
-            {.kinds = {gpu::Kind::sampled_image, gpu::Kind::storage_buffer, gpu::Kind::storage_buffer},
-             .push_bytes = sizeof(shaders::GeometryConstants)},
+            {.kinds = {gpu::Kind::sampled_image}, .push_bytes = sizeof(shaders::GeometryConstants)},
             {.vertex_stride = sizeof(scene::Vertex),
              .attributes = {{0, rgb32f, offsetof(scene::Vertex, position)},
                             {1, rgb32f, offsetof(scene::Vertex, normal)},
                             {2, vk::Format::eR32G32Sfloat, offsetof(scene::Vertex, atlas)},
                             {3, vk::Format::eR32G32Sfloat, offsetof(scene::Vertex, colour)}},
              .colours = std::vector(5, rgba32f)}),
+      walls_(device, "geometry_texture", geometry_texture_walls_comp,
+             {.kinds = {gpu::Kind::storage_image, gpu::Kind::storage_image, gpu::Kind::storage_buffer,
+                        gpu::Kind::storage_buffer, gpu::Kind::storage_image}}),
       gutter_(
           device, "geometry_texture", geometry_texture_gutter_comp,
           {.kinds = std::vector(4, gpu::Kind::storage_image), .push_bytes = sizeof(shaders::GutterConstants)}) {
@@ -34,18 +37,14 @@ void GeometryTexture::record(gpu::Frame& frame, const Geometry& geometry, const 
   gpu::Target target{.extent = map.position.extent()};
   for (const auto* image : {&map.position, &map.normal, &map.face_normal, &map.albedo, &map.emission})
     target.colours.push_back({image, nothing});
-  const auto walls_first = gpu::reads(geometry.walls_first), walls = gpu::reads(geometry.walls);
-  std::vector<gpu::Binding> bindings;
-  for (const auto& texture : geometry.textures) bindings.push_back(gpu::sampled(texture, geometry.sampler));
-  const std::vector textures = bindings;
-  bindings.insert(bindings.end(), {walls_first, walls});
-  frame.render(draw_.name(), target, bindings, {&geometry.vertices, &geometry.indices}, [&](gpu::Draw& draw) {
+  std::vector<gpu::Binding> textures;
+  for (const auto& texture : geometry.textures) textures.push_back(gpu::sampled(texture, geometry.sampler));
+  frame.render(draw_.name(), target, textures, {&geometry.vertices, &geometry.indices}, [&](gpu::Draw& draw) {
     const auto offsets = geometry.offsets.as<glm::vec4>();
     draw.geometry(geometry.vertices, geometry.indices);
     for (const auto& surface : geometry.scene.surfaces) {
       const auto& material = geometry.scene.materials[surface.material];
-      draw.bind(draw_,
-                {material.texture < 0 ? textures.back() : textures[material.texture], walls_first, walls});
+      draw.bind(draw_, {material.texture < 0 ? textures.back() : textures[material.texture]});
       draw.push(shaders::GeometryConstants{.offset = offsets[surface.body],
                                            .base_colour = glm::vec4(material.base_colour, 1),
                                            .emission = glm::vec4(material.emission, 1),
@@ -53,6 +52,13 @@ void GeometryTexture::record(gpu::Frame& frame, const Geometry& geometry, const 
       draw.indexed(surface.first_index, surface.index_count);
     }
   });
+  frame.compute(walls_,
+                {gpu::reads(map.position), gpu::reads(map.face_normal), gpu::reads(geometry.walls_first),
+                 gpu::reads(geometry.walls), gpu::writes(map.near_walls)},
+                map.groups, map.groups);
+}
+
+void GeometryTexture::find_sources(gpu::Frame& frame, const LightMap& map) const {
   name_sources(frame, map, false, map.source);
 }
 

@@ -49,6 +49,7 @@ LightMap::LightMap(const gpu::Device& device, std::uint32_t size)
       position(atlas_image(device, "position", size, rgba32f, Usage::eColorAttachment)),
       normal(atlas_image(device, "normal", size, rgba32f, Usage::eColorAttachment)),
       face_normal(atlas_image(device, "face_normal", size, rgba32f, Usage::eColorAttachment)),
+      near_walls(atlas_image(device, "near_walls", size, vk::Format::eR32G32B32A32Uint, {})),
       albedo(atlas_image(device, "albedo", size, rgba32f, Usage::eColorAttachment)),
       emission(atlas_image(device, "emission", size, rgba32f, Usage::eColorAttachment)),
       source(atlas_image(device, "source", size, vk::Format::eR32Uint, {})),

@@ -15,16 +15,18 @@ struct LightMap {
   LightMap(const gpu::Device& device, std::uint32_t size);
 
   std::uint32_t size;
-  std::uint32_t groups;       // compute workgroups a side
-  gpu::Image position;        // xyz [m]; a: 1 on valid texels
-  gpu::Image normal;          // xyz: unit shading normal; a: distance to the nearest wall on its plane [m]
-  gpu::Image face_normal;     // xyz: unit normal of the triangle; a: the triangle's number
-  gpu::Image albedo;          // rgb: 0..1
-  gpu::Image emission;        // rgb: Le [W m^-2 sr^-1]
-  gpu::Image source;          // uint: the texel whose light this one sends; gutters name their nearest
-  gpu::Image shown;           // uint: the texel whose light players see; covered texels name theirs too
-  gpu::Image cover;           // weights [sr] of rays that start in contact with a surface, less all others
-  gpu::Image psf_irradiance;  // rgb: w_k L_k [W m^-2]; a: w_k [sr]; of one direction
+  std::uint32_t groups;    // compute workgroups a side
+  gpu::Image position;     // xyz [m]; a: 1 on valid texels
+  gpu::Image normal;       // xyz: unit shading normal
+  gpu::Image face_normal;  // xyz: unit normal of the triangle; a: the triangle's number
+  gpu::Image near_walls;   // uint: the two nearest walls on its plane; distances of the first and of the third,
+                           // as bits [m]
+  gpu::Image albedo;       // rgb: 0..1
+  gpu::Image emission;     // rgb: Le [W m^-2 sr^-1]
+  gpu::Image source;       // uint: the texel whose light this one sends; gutters name their nearest
+  gpu::Image shown;        // uint: the texel whose light players see; covered texels name theirs too
+  gpu::Image cover;        // weights [sr] of rays that start in contact with a surface, less all others
+  gpu::Image psf_irradiance;                    // rgb: w_k L_k [W m^-2]; a: w_k [sr]; of one direction
   std::array<gpu::Image, 2> bounce_irradiance;  // their sums over each half of the directions
   gpu::Image total_irradiance;                  // rgb: E [W m^-2]; a: 1 on valid texels
   gpu::Image half_difference;  // rgb: by how much each half of the directions differs from E [W m^-2], signed

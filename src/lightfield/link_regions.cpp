@@ -11,6 +11,10 @@ namespace {
 // and the nearest of them may be rounded.
 constexpr float margin = 3;
 
+// A workgroup's: to start one costs a CPU device as much as to route some texels, and a GPU wants thousands of
+// them.
+constexpr std::uint32_t tiles_a_job = 16;
+
 glm::vec2 in_pixels(const shaders::PsfView& view, const glm::vec3& point, float pixels) {
   const glm::vec4 p(point, 1);
   return (glm::vec2(glm::dot(view.right, p), glm::dot(view.up, p)) * 0.5f + 0.5f) * pixels;
@@ -48,7 +52,9 @@ shaders::Region changed(const shaders::PsfView& view, std::uint32_t pair, std::u
 }
 
 std::vector<RegionBatch> pack(std::vector<shaders::Region> regions, const StoreExtent& store,
-                              std::uint32_t pixels, const std::vector<TileBounds>& tiles) {
+                              std::uint32_t pixels, const std::vector<TileBounds>& coarse,
+                              const std::vector<TileBounds>& tiles) {
+  const std::size_t each = coarse.empty() ? 1 : (tiles.size() + coarse.size() - 1) / coarse.size();
   std::vector<RegionBatch> batches;
   const auto width = static_cast<int>(store.width), height = static_cast<int>(store.height);
   glm::ivec2 corner(0);  // of the next region: regions stand in rows, as long as they fit
@@ -72,8 +78,16 @@ std::vector<RegionBatch> pack(std::vector<shaders::Region> regions, const StoreE
     auto& batch = batches.back();
     const auto index = static_cast<std::uint32_t>(batch.regions.size());
     batch.regions.push_back(region);
-    for (std::uint32_t tile = 0; tile < tiles.size(); ++tile)
-      if (looks_into(tiles[tile], region, static_cast<float>(pixels))) batch.jobs.push_back({index, tile});
+    const auto first = static_cast<std::uint32_t>(batch.tiles.size());
+    const auto side = static_cast<float>(pixels);
+    for (std::size_t group = 0; group < coarse.size(); ++group) {
+      if (!looks_into(coarse[group], region, side)) continue;
+      for (std::size_t tile = group * each; tile < std::min((group + 1) * each, tiles.size()); ++tile)
+        if (looks_into(tiles[tile], region, side)) batch.tiles.push_back(static_cast<std::uint32_t>(tile));
+    }
+    const auto end = static_cast<std::uint32_t>(batch.tiles.size());
+    for (auto begin = first; begin < end; begin += tiles_a_job)
+      batch.jobs.push_back({index, begin, std::min(begin + tiles_a_job, end)});
   }
   return batches;
 }

@@ -17,10 +17,8 @@ struct StoreExtent {
 // As much as is emitted and routed at once.
 struct RegionBatch {
   std::vector<shaders::Region> regions;
-  struct Job {
-    std::uint32_t region, tile;
-  };
-  std::vector<Job> jobs;  // in the order of the regions' pairs
+  std::vector<std::uint32_t> tiles;     // that look into the regions, region by region
+  std::vector<shaders::RouteJob> jobs;  // in the order of the regions' pairs
 };
 
 // The whole raster of a pair's view.
@@ -31,8 +29,10 @@ shaders::Region whole(const shaders::PsfView& view, std::uint32_t pair, std::uin
 shaders::Region changed(const shaders::PsfView& view, std::uint32_t pair, std::uint32_t pixels,
                         const scene::Box& before, const scene::Box& after);
 
-// Regions of at most the store's extent each; those of a batch keep the order of their pairs.
+// Regions of at most the store's extent each; those of a batch keep the order of their pairs. `tiles` are asked
+// only where the `coarse` bounds of several of them look into a region.
 std::vector<RegionBatch> pack(std::vector<shaders::Region> regions, const StoreExtent& store,
-                              std::uint32_t pixels, const std::vector<TileBounds>& tiles);
+                              std::uint32_t pixels, const std::vector<TileBounds>& coarse,
+                              const std::vector<TileBounds>& tiles);
 
 }  // namespace lichtveld::lightfield

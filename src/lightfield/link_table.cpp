@@ -1,6 +1,7 @@
 #include "link_table.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <limits>
 
 namespace lichtveld::lightfield {
@@ -12,13 +13,16 @@ constexpr std::uint32_t block = 8;
 // Of the device's memory, links may take: the rest is for images, and for whoever else lives there.
 constexpr double most_of_memory = 0.75;
 
+// Within a block in Morton order, so that any run of numbers is nearly square.
 std::vector<std::uint32_t> valid_texels(const std::vector<glm::vec4>& positions, std::uint32_t size) {
   std::vector<std::uint32_t> found;
   for (std::uint32_t top = 0; top < size; top += block)
     for (std::uint32_t left = 0; left < size; left += block)
-      for (std::uint32_t y = top; y < std::min(top + block, size); ++y)
-        for (std::uint32_t x = left; x < std::min(left + block, size); ++x)
-          if (positions[std::size_t{y} * size + x].a > 0) found.push_back(y * size + x);
+      for (std::uint32_t code = 0; code < block * block; ++code) {
+        const std::uint32_t x = left + (code & 1) + (code >> 1 & 2) + (code >> 2 & 4),
+                            y = top + (code >> 1 & 1) + (code >> 2 & 2) + (code >> 3 & 4);
+        if (x < size && y < size && positions[std::size_t{y} * size + x].a > 0) found.push_back(y * size + x);
+      }
   return found;
 }
 
@@ -57,6 +61,7 @@ LinkTable::LinkTable(const gpu::Device& device, const scene::Scene& scene, const
   const auto valid = valid_texels(positions, map.size);
   const auto bodies = body_of_triangles(scene);
   texels = static_cast<std::uint32_t>(valid.size());
+  tile = std::clamp(std::bit_floor(device.summary().subgroup_size), 8u, shaders::TILE);
   for (const auto texel : valid)
     places_.push_back({glm::vec3(positions[texel]), bodies[static_cast<std::size_t>(faces[texel].a)]});
   // Two values are not texels: a miss, and a link that no pixel tells.
@@ -84,10 +89,11 @@ LinkTable::LinkTable(const gpu::Device& device, const scene::Scene& scene, const
   }
 }
 
-std::vector<TileBounds> LinkTable::bounds(const std::vector<glm::vec3>& offsets) const {
+std::vector<TileBounds> LinkTable::bounds(const std::vector<glm::vec3>& offsets,
+                                          std::uint32_t texels_each) const {
   std::vector<TileBounds> found;
-  for (std::uint32_t first = 0; first < texels; first += shaders::TILE) {
-    const auto end = std::min(first + shaders::TILE, texels);
+  for (std::uint32_t first = 0; first < texels; first += texels_each) {
+    const auto end = std::min(first + texels_each, texels);
     glm::vec3 low(std::numeric_limits<float>::max()), high(std::numeric_limits<float>::lowest());
     for (std::uint32_t index = first; index < end; ++index) {
       const glm::vec3 place = places_[index].at_rest + offsets[places_[index].body];

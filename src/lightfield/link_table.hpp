@@ -11,7 +11,7 @@
 
 namespace lichtveld::lightfield {
 
-// A tile's texels lie in this sphere, bodies at their places [m].
+// The texels of consecutive numbers lie in this sphere, bodies at their places [m].
 struct TileBounds {
   glm::vec3 centre;
   float radius;
@@ -34,8 +34,9 @@ struct LinkTable {
   gpu::Buffer texel_of;  // uint: the atlas texel of each number
   gpu::Image number;     // uint: the number of each atlas texel's source; `texels` outside charts and gutters
 
-  std::uint32_t tiles() const { return (texels + shaders::TILE - 1) / shaders::TILE; }
-  std::vector<TileBounds> bounds(const std::vector<glm::vec3>& offsets) const;
+  std::uint32_t groups() const { return (texels + shaders::TILE - 1) / shaders::TILE; }  // workgroups over all
+  std::uint32_t tile = 64;  // texels that are routed together: a vector of the device's
+  std::vector<TileBounds> bounds(const std::vector<glm::vec3>& offsets, std::uint32_t texels_each) const;
 
  private:
   struct Texel {

@@ -84,6 +84,11 @@ struct Links::Parts {
         counters(device, "lightfield/counters", sizeof(shaders::Counters),
                  vk::BufferUsageFlagBits::eStorageBuffer, gpu::Memory::host) {
     place(at_rest());
+    {
+      gpu::Frame frame(device, times);
+      geometry_texture.find_sources(frame, map);
+      frame.submit_and_wait();
+    }
     brightest_of_scene = brightest(device, map);
     table = std::make_unique<LinkTable>(device, scene, map, pairs());
     gather = std::make_unique<Gather>(device, *table, psfs, radiance_scale(brightest_of_scene));
@@ -116,7 +121,7 @@ struct Links::Parts {
   void route(const std::vector<shaders::Region>& regions);
   void start();
   void bounce();
-  void converge();
+  void converge(const std::function<bool(std::uint32_t)>& enough);
   void present();
 };
 
@@ -132,29 +137,23 @@ Solution Links::solve(const std::vector<glm::vec3>& offsets) {
   parts.link(offsets);
   Solution& solution = parts.solution;
   solution.bounces = 0;
-  if (const auto wanted = parts.settings.bounces) {
-    parts.start();
-    while (solution.bounces < *wanted) parts.bounce();
-  } else {
-    if (!parts.lit) parts.start();
-    parts.converge();
-    if (solution.bounces == most_bounces)
-      spdlog::warn("still {:.2g} of the mean may be missing after {} bounces: an albedo near 1 bounds nothing",
-                   solution.residual, solution.bounces);
-  }
+  parts.converge([](std::uint32_t) { return false; });
+  if (solution.bounces == most_bounces && !parts.settings.bounces)
+    spdlog::warn("still {:.2g} of the mean may be missing after {} bounces: an albedo near 1 bounds nothing",
+                 solution.residual, solution.bounces);
   solution.error_estimate = split_half_error(parts.device, parts.map);
   parts.present();
   return solution;
 }
 
-Solution Links::update(const std::vector<glm::vec3>& offsets, std::uint32_t bounces) {
+Solution Links::update(const std::vector<glm::vec3>& offsets,
+                       const std::function<bool(std::uint32_t)>& enough) {
   Parts& parts = *parts_;
-  parts.link(offsets);
   Solution& solution = parts.solution;
   solution.bounces = 0;
-  if (!parts.lit) parts.start();
-  do parts.bounce();
-  while (solution.residual >= converged && solution.bounces < bounces);
+  if (offsets == parts.offsets && solution.settled) return solution;
+  parts.link(offsets);
+  parts.converge(enough);
   parts.present();
   return solution;
 }
@@ -182,6 +181,7 @@ void Links::Parts::place(const std::vector<glm::vec3>& to) {
 // Brings the links to where the bodies are.
 void Links::Parts::link(const std::vector<glm::vec3>& to) {
   if (to == offsets) return;
+  solution.settled = false;
   const auto sphere_before = geometry.sphere;
   place(to);
   // All views are scaled by the scene's sphere; if that changes, so does every raster.
@@ -216,13 +216,17 @@ std::vector<shaders::Region> Links::Parts::to_link(const std::vector<glm::vec3>&
 
 void Links::Parts::route(const std::vector<shaders::Region>& regions) {
   const auto pixels = settings.raster();
-  const auto tiles = table->bounds(geometry.shifts);
-  auto batches = pack(regions, layered->store.extent, pixels, tiles);
+  const auto coarse = table->bounds(geometry.shifts, shaders::TILE),
+             tiles = table->bounds(geometry.shifts, table->tile);
+  auto batches = pack(regions, layered->store.extent, pixels, coarse, tiles);
+  bool placed = false;  // the texels, in this store's buffers
   for (std::size_t batch = 0; batch < batches.size();) {
     auto& counted = counters.as<shaders::Counters>().front();
     counted = {
         .rays = 0, .misses = 0, .unknown = 0, .overflow_pixels = 0, .layers_max = solution.depth_layers_max};
     gpu::Frame frame(device, times);
+    if (!placed) layered->route.read_receivers(frame, map, *table);
+    placed = true;
     layered->route.record(frame, batches[batch], geometry, map, *table, layered->store, pixels, settings.layers,
                           counters);
     frame.to_host(counters);
@@ -238,14 +242,18 @@ void Links::Parts::route(const std::vector<shaders::Region>& regions) {
                    solution.overflow_pixels, settings.layers, counted.layers_max);
       layered.reset();  // first, so that both need not fit
       layered = std::make_unique<Layered>(device, settings, *table, std::bit_ceil(counted.layers_max));
-      batches = pack(regions, layered->store.extent, pixels, tiles);
+      batches = pack(regions, layered->store.extent, pixels, coarse, tiles);
       batch = 0;
+      placed = false;
       continue;
     }
     solution.misses += counted.misses;
     solution.rays_unknown += counted.unknown;
     ++batch;
   }
+  gpu::Frame frame(device, times);
+  layered->route.find_cover(frame, geometry, map, *table, gather->directions(), pixels);
+  frame.submit_and_wait();
 }
 
 void Links::Parts::start() {
@@ -268,15 +276,24 @@ void Links::Parts::bounce() {
                           : change.most / (1 - brightest_of_scene.albedo) / change.mean;
 }
 
-// Until the bound is met, or falls no more: with few directions the packing's last digits may go on flickering by more.
-void Links::Parts::converge() {
+// As many bounces as are asked for; or until the bound is met, or falls no more: with few directions the
+// packing's last digits may go on flickering by more.
+void Links::Parts::converge(const std::function<bool(std::uint32_t)>& enough) {
+  if (settings.bounces) {
+    start();
+    while (solution.bounces < *settings.bounces) bounce();
+    solution.settled = true;
+    return;
+  }
+  if (!lit) start();
   double least = std::numeric_limits<double>::infinity();
   std::uint32_t since = 0;
   do {
     bounce();
     since = solution.residual < least ? 0 : since + 1;
     least = std::min(least, solution.residual);
-  } while (solution.residual >= converged && since < patience && solution.bounces < most_bounces);
+    solution.settled = solution.residual < converged || since == patience || solution.bounces == most_bounces;
+  } while (!solution.settled && !enough(solution.bounces));
 }
 
 void Links::Parts::present() {

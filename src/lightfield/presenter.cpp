@@ -23,6 +23,7 @@ std::vector<std::uint8_t> present(const gpu::Device& device, const scene::Scene&
   gpu::Frame frame(device, times);
   frame.clear("present", map.cover, {});
   geometry_texture.record(frame, geometry, map);
+  geometry_texture.find_sources(frame, map);
   geometry_texture.find_shown(frame, map);
   frame.copy("present", given, map.total_irradiance);
   brdf.record(frame, map);

@@ -6,6 +6,8 @@
 
 #include "shaders/emit_links.frag.h"
 #include "shaders/emit_links.vert.h"
+#include "shaders/link_cover.comp.h"
+#include "shaders/receivers.comp.h"
 #include "shaders/route_links_16.comp.h"
 #include "shaders/route_links_32.comp.h"
 
@@ -18,6 +20,8 @@ using gpu::Kind;
 // A store of this size holds what a moved cube changes in 384 directions at 256 pixels, and is cleared in a
 // fraction of a millisecond [bytes].
 constexpr std::uint64_t usual_store = 64 << 20;
+// Pairs that decide whether a texel is covered; it sees steeply along half of them.
+constexpr std::uint32_t cover_votes = 24;
 constexpr std::uint32_t widest_store = 4096;  // [pixels]; every device renders that
 
 StoreExtent store_extent(const gpu::Device& device, std::uint32_t pixels, std::uint32_t capacity) {
@@ -64,12 +68,26 @@ RouteLinks::RouteLinks(const gpu::Device& device, const LinkStore& store, const 
       route_(device, "route_links",
              table.bits == 16 ? gpu::Spirv(route_links_16_comp) : gpu::Spirv(route_links_32_comp),
              {.kinds = {Kind::storage_buffer, Kind::storage_buffer, Kind::storage_buffer, Kind::storage_buffer,
-                        Kind::storage_buffer, Kind::storage_image, Kind::storage_image, Kind::storage_image,
+                        Kind::storage_buffer, Kind::storage_buffer, Kind::storage_image, Kind::storage_buffer,
                         Kind::storage_buffer, Kind::storage_buffer, Kind::storage_buffer, Kind::storage_buffer},
               .push_bytes = sizeof(shaders::RouteLinksConstants),
-              .specialisation = {store.capacity}}),
+              .specialisation = {store.capacity, table.tile}}),
+      receive_(device, "route_links", receivers_comp,
+               {.kinds = {Kind::storage_buffer, Kind::storage_image, Kind::storage_image, Kind::storage_image,
+                          Kind::storage_image, Kind::storage_buffer, Kind::storage_buffer},
+                .push_bytes = sizeof(shaders::BounceConstants)}),
+      cover_(device, "route_links", link_cover_comp,
+             {.kinds = {Kind::storage_buffer, Kind::storage_buffer, Kind::storage_buffer, Kind::storage_buffer,
+                        Kind::storage_image},
+              .push_bytes = sizeof(shaders::CoverConstants),
+              .specialisation = {table.bits}}),
+      receivers_(device, "lightfield/receivers", table.texels * sizeof(shaders::Receiver),
+                 vk::BufferUsageFlagBits::eStorageBuffer),
+      positions_(device, "lightfield/positions", table.texels * sizeof(glm::vec4),
+                 vk::BufferUsageFlagBits::eStorageBuffer),
       regions_(host_buffer(device, "lightfield/regions")),
-      jobs_(host_buffer(device, "lightfield/jobs")) {
+      jobs_(host_buffer(device, "lightfield/jobs")),
+      tiles_(host_buffer(device, "lightfield/tiles")) {
   for (const std::uint32_t double_sided : {0u, 1u})
     draw_.emplace_back(
         device, "emit_links", emit_links_vert, emit_links_frag,
@@ -85,11 +103,34 @@ RouteLinks::RouteLinks(const gpu::Device& device, const LinkStore& store, const 
                            .front = vk::FrontFace::eClockwise});
 }
 
+void RouteLinks::read_receivers(gpu::Frame& frame, const LightMap& map, const LinkTable& table) const {
+  frame.compute(receive_,
+                {gpu::reads(table.texel_of), gpu::reads(map.position), gpu::reads(map.normal),
+                 gpu::reads(map.face_normal), gpu::reads(map.near_walls), gpu::writes(receivers_),
+                 gpu::writes(positions_)},
+                shaders::BounceConstants{.texels = table.texels, .radiance_scale = 1}, table.groups(), 1);
+}
+
+void RouteLinks::find_cover(gpu::Frame& frame, const Geometry& geometry, const LightMap& map,
+                            const LinkTable& table, const gpu::Buffer& directions, std::uint32_t pixels) const {
+  const auto& chunk = table.chunks.front();
+  frame.compute(cover_,
+                {gpu::reads(chunk.links), gpu::reads(directions), gpu::reads(receivers_),
+                 gpu::reads(positions_), gpu::writes(map.cover)},
+                shaders::CoverConstants{
+                    .texels = table.texels,
+                    .pairs = chunk.pairs,
+                    .votes = std::min(chunk.pairs, cover_votes),
+                    .contact = shaders::CONTACT * 2 * geometry.sphere.radius / static_cast<float>(pixels)},
+                table.groups(), 1);
+}
+
 void RouteLinks::record(gpu::Frame& frame, const RegionBatch& batch, const Geometry& geometry,
                         const LightMap& map, const LinkTable& table, const LinkStore& store,
                         std::uint32_t pixels, std::uint32_t limit, const gpu::Buffer& counters) {
   put(device_, regions_, batch.regions);
   put(device_, jobs_, batch.jobs);
+  put(device_, tiles_, batch.tiles);
   frame.clear("emit_links", store.filled);
   const std::vector bindings = {gpu::reads(geometry.offsets), gpu::reads(regions_),
                                 gpu::reads(table.number),     gpu::writes(store.filled),
@@ -116,16 +157,16 @@ void RouteLinks::record(gpu::Frame& frame, const RegionBatch& batch, const Geome
   // Jobs stand in the order of their pairs, and so of the table's chunks.
   auto first = batch.jobs.begin();
   for (const auto& chunk : table.chunks) {
-    const auto end = std::find_if(first, batch.jobs.end(), [&](const RegionBatch::Job& job) {
+    const auto end = std::find_if(first, batch.jobs.end(), [&](const shaders::RouteJob& job) {
       return static_cast<std::uint32_t>(batch.regions[job.region].place.z) >= chunk.first_pair + chunk.pairs;
     });
     if (first == end) continue;
     frame.compute(
         route_,
         {gpu::reads(store.layers), gpu::reads(store.filled), gpu::reads(regions_), gpu::reads(jobs_),
-         gpu::reads(table.texel_of), gpu::reads(map.position), gpu::reads(map.normal),
-         gpu::reads(map.face_normal), gpu::reads(geometry.walls_first), gpu::reads(geometry.walls),
-         gpu::writes(chunk.links), gpu::writes(counters)},
+         gpu::reads(receivers_), gpu::reads(positions_), gpu::reads(map.position),
+         gpu::reads(geometry.walls_first), gpu::reads(geometry.walls), gpu::writes(chunk.links),
+         gpu::writes(counters), gpu::reads(tiles_)},
         shaders::RouteLinksConstants{.size = pixels,
                                      .store_width = store.extent.width,
                                      .texels = table.texels,

@@ -23,6 +23,13 @@ class RouteLinks {
  public:
   RouteLinks(const gpu::Device& device, const LinkStore& store, const LinkTable& table);
 
+  // Reads where the texels are from the geometry texture: whenever that has been drawn again.
+  void read_receivers(gpu::Frame& frame, const LightMap& map, const LinkTable& table) const;
+
+  // Writes `cover`, for what has been routed.
+  void find_cover(gpu::Frame& frame, const Geometry& geometry, const LightMap& map, const LinkTable& table,
+                  const gpu::Buffer& directions, std::uint32_t pixels) const;
+
   // Records one batch into the frame; its regions and jobs stay on the device until the next. `limit` layers
   // are asked for; pixels with more, misses and unknown rays are added to `counters`.
   void record(gpu::Frame& frame, const RegionBatch& batch, const Geometry& geometry, const LightMap& map,
@@ -32,8 +39,9 @@ class RouteLinks {
  private:
   const gpu::Device& device_;
   std::vector<gpu::GraphicsPipeline> draw_;  // one-sided, double-sided
-  gpu::ComputePipeline route_;
-  gpu::Buffer regions_, jobs_;  // host-visible
+  gpu::ComputePipeline route_, receive_, cover_;
+  gpu::Buffer receivers_, positions_;   // of each valid texel
+  gpu::Buffer regions_, jobs_, tiles_;  // host-visible
 };
 
 }  // namespace lichtveld::lightfield

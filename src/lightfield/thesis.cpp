@@ -145,6 +145,7 @@ void Thesis::Parts::begin(const std::vector<glm::vec3>& offsets) {
   frame.clear("blend", map.total_irradiance, {});
   clear_bounce(frame);
   geometry_texture.record(frame, geometry, map);
+  geometry_texture.find_sources(frame, map);
   brdf.record(frame, map);
   frame.submit_and_wait();
 }

@@ -2,6 +2,7 @@
 // bounce is a sum over kept links; a moved body re-routes only what its old and its new projections touch.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -22,9 +23,11 @@ class Links {
   // is kept: links that no moved body touched, and with `--bounces auto` the light to start from.
   Solution solve(const std::vector<glm::vec3>& offsets);
 
-  // The same within a frame: re-routes, then at most `bounces` bounces from the light as it is.
-  // Solution::residual says what may be missing; error_estimate and counts of rays are left out.
-  Solution update(const std::vector<glm::vec3>& offsets, std::uint32_t bounces);
+  // The same for the next frame of a room where things move: re-routes, then bounces from the light as it is,
+  // at least one, until nothing is missing or enough(bounces so far) is true. Solution::residual says what may
+  // be missing; error_estimate is left out. Where nothing has moved and nothing is missing, nothing is done and
+  // bounces is 0.
+  Solution update(const std::vector<glm::vec3>& offsets, const std::function<bool(std::uint32_t)>& enough);
 
   // After either. size * size texels, row 0 on top.
   std::vector<glm::vec4> irradiance();    // rgb: E [W m^-2]; a: 1 on valid texels

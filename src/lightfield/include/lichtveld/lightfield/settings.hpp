@@ -37,6 +37,7 @@ struct Solution {
   // What may still be missing from E, as a share of its mean: largest change in the last bounce / (1 - max
   // albedo), which is more than all later bounces add. Infinite where some albedo is 1.
   double residual = 0;
+  bool settled = true;  // nothing that more bounces would change, as far as asked for
   // What rel_rmse against the exact answer has to be expected of this many directions and pixels: from what the
   // two halves of the directions say apart. It sees what is random about them, not what they have in common.
   double error_estimate = 0;

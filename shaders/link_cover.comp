@@ -1,0 +1,43 @@
+// Which texels other geometry lies on: most of what they see steeply lies in their own plane and faces them.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "shared.h"
+#include "links.glsl"
+
+layout(local_size_x = TILE) in;
+layout(constant_id = 0) const uint BITS = 16;  // of a link
+layout(binding = 0) readonly buffer Table { uint table[]; };
+layout(binding = 1) readonly buffer Directions { vec4 directions[]; };  // xyz; w: solid angle [sr], of each pair
+layout(binding = 2) readonly buffer Receivers { Receiver receivers[]; };
+layout(binding = 3) readonly buffer Positions { vec4 positions[]; };  // xyz [m]; w: the atlas texel
+layout(binding = 4, r32f) uniform writeonly image2D cover;            // as LightMap::cover
+layout(push_constant) uniform Push { CoverConstants constants; };
+
+// Flatter than 60 degrees off the normal a texel meets a block's side as near as its bottom.
+const float STEEP = 0.5;
+// Faces look at each other within 25 degrees.
+const float FACING = 0.9;
+
+uint link_of(uint pair, uint me) {
+  if (BITS == 32u) return table[pair * constants.texels + me];
+  return table[(pair / 2u) * constants.texels + me] >> 16u * (pair & 1u) & 0xffffu;
+}
+
+void main() {
+  const uint me = gl_GlobalInvocationID.x;
+  if (me >= constants.texels) return;
+  const vec3 face = receivers[me].face_and_triangle.xyz;
+  const vec4 place = positions[me];
+  float balance = 0.0;
+  for (uint vote = 0u; vote < constants.votes; ++vote) {
+    const uint pair = vote * constants.pairs / constants.votes;
+    const float cosine = abs(dot(face, directions[pair].xyz));
+    const uint link = link_of(pair, me);
+    if (cosine < STEEP || link >= constants.texels) continue;
+    const bool touches = dot(face, receivers[link].face_and_triangle.xyz) < -FACING &&
+                         abs(dot(face, positions[link].xyz - place.xyz)) <= constants.contact;
+    balance += touches ? cosine : -cosine;
+  }
+  const uint width = uint(imageSize(cover).x), texel = uint(place.w);
+  imageStore(cover, ivec2(texel % width, texel / width), vec4(balance));
+}
