@@ -1,0 +1,203 @@
+// Kept links against known answers, against the thesis' method, and moved bodies against a fresh start.
+#include <gmock/gmock.h>
+
+#include <random>
+
+#include "device_for_tests.hpp"
+#include "known_scenes.hpp"
+#include "lichtveld/lightfield/links.hpp"
+#include "lichtveld/lightfield/thesis.hpp"
+#include "lichtveld/reference/error.hpp"
+
+namespace lichtveld::lightfield {
+namespace {
+
+using namespace lichtveld::testing;
+using Offsets = std::vector<glm::vec3>;
+
+class LinksMethod : public WithDevice {
+ protected:
+  std::vector<glm::vec4> fresh(const scene::Scene& scene, const Settings& settings, const Offsets& offsets) {
+    Links links(device(), scene, settings);
+    links.solve(offsets);
+    return links.irradiance();
+  }
+  std::vector<glm::vec4> fresh(const scene::Scene& scene, const Settings& settings) {
+    return fresh(scene, settings, at_rest(scene));
+  }
+  static Offsets at_rest(const scene::Scene& scene) { return Offsets(scene.bodies.size(), glm::vec3(0)); }
+};
+
+scene::Scene cornell() {
+  return scene::load(LICHTVELD_SOURCE_DIR "/assets/cornell.glb");
+}
+
+double rel_rmse(const std::vector<glm::vec4>& irradiance, const std::vector<glm::vec4>& truth) {
+  return reference::error_of(irradiance, truth).rel_rmse;
+}
+
+// Uniform light has the same rounding in every texel: packed radiance is off by 1/1024 at most, and so is every
+// bounce.
+TEST_F(LinksMethod, FurnaceIsExactButForThePacking) {
+  const auto irradiance = fresh(furnace(0.5f), {.size = 64, .psf = 96, .bounces = 3});
+  for (const auto& texel : irradiance)
+    if (texel.a > 0) {
+      ASSERT_NEAR(texel.g / (pi * 1.75), 1, 2e-3);
+    }
+}
+
+TEST_F(LinksMethod, FurnaceConvergesByItself) {
+  const auto scene = furnace(0.8f);
+  Links links(device(), scene, {.size = 32, .psf = 96});
+  const auto solution = links.solve(at_rest(scene));
+  EXPECT_LT(solution.residual, 1e-3);
+  EXPECT_TRUE(solution.settled);
+  EXPECT_EQ(solution.misses, 0u);
+  for (const auto& texel : links.irradiance())
+    if (texel.a > 0) {
+      ASSERT_NEAR(texel.g / (pi / (1 - 0.8)), 1, 5e-3);  // the packing's error grows by 1 / (1 - albedo)
+    }
+}
+
+// Both see the same pixels; links take the nearest texel where the thesis blends four.
+TEST_F(LinksMethod, AgreesWithTheThesis) {
+  const auto scene = cornell();
+  for (const std::optional<std::uint32_t> bounces :
+       {std::optional(1u), std::optional(3u), std::optional<std::uint32_t>()}) {
+    const Settings settings{
+        .size = 64, .psf = 96, .bounces = bounces, .abuffer = ABuffer::list, .sort = Sort::scan};
+    Thesis thesis(device(), scene, settings);
+    thesis.solve(at_rest(scene));
+    EXPECT_LT(rel_rmse(fresh(scene, settings), thesis.irradiance()), 0.025);
+  }
+}
+
+TEST_F(LinksMethod, LinksOf32BitsSayTheSame) {
+  SceneBuilder builder;  // at 512 texels a side more than 16 bits can number
+  builder.box("room", glm::vec3(-1), glm::vec3(1), {0, 0, 1, 1},
+              builder.material(glm::vec3(0.5f), glm::vec3(1)), true);
+  const auto irradiance = fresh(loaded(builder), {.size = 512, .psf = 8, .bounces = 2});
+  std::size_t valid = 0;
+  for (const auto& texel : irradiance)
+    if (texel.a > 0) {
+      ASSERT_NEAR(texel.g / (pi * 1.5), 1, 2e-3);
+      ++valid;
+    }
+  EXPECT_GT(valid, 65535u);
+}
+
+class Moves : public LinksMethod {
+ protected:
+  const scene::Scene scene_ = cornell();
+  const Settings settings_{.size = 64, .psf = 96};
+};
+
+TEST_F(Moves, AMovedBodyIsLinkedAsAFreshStartWould) {
+  Links links(device(), scene_, settings_);
+  auto offsets = at_rest(scene_);
+  links.solve(offsets);
+  offsets[1] = {-0.5f, 0.4f, 0};
+  offsets[2] = {0.3f, -0.2f, 0.1f};
+  links.solve(offsets);
+  const auto afresh = fresh(scene_, settings_, offsets);
+  EXPECT_LT(rel_rmse(links.irradiance(), afresh), 2e-3);
+  EXPECT_GT(rel_rmse(fresh(scene_, settings_), afresh), 0.02) << "the move must matter";
+}
+
+TEST_F(Moves, ManyMovesLeaveNoTrace) {
+  Links links(device(), scene_, settings_);
+  auto offsets = at_rest(scene_);
+  links.solve(offsets);
+  std::mt19937 random(1);
+  const auto step = [&] { return 0.3f * (static_cast<float>(random() % 1001) / 500 - 1); };
+  for (int move = 0; move < 150; ++move) {
+    const auto body = 1 + random() % 2;
+    offsets[body] = glm::clamp(offsets[body] + glm::vec3(step(), step(), step()), -1.0f, 1.0f);
+    links.update(offsets, [](std::uint32_t) { return true; });
+  }
+  links.solve(offsets);
+  EXPECT_LT(rel_rmse(links.irradiance(), fresh(scene_, settings_, offsets)), 2e-3);
+  links.solve(at_rest(scene_));
+  EXPECT_LT(rel_rmse(links.irradiance(), fresh(scene_, settings_)), 2e-3);
+}
+
+// A body that leaves the room makes the scene's sphere, and so all rasters, larger.
+TEST_F(Moves, AMoveThatWidensTheSceneIsLinkedAfresh) {
+  Links links(device(), scene_, settings_);
+  auto offsets = at_rest(scene_);
+  links.solve(offsets);
+  offsets[1] = {0, 20, 0};
+  links.solve(offsets);
+  EXPECT_LT(rel_rmse(links.irradiance(), fresh(scene_, settings_, offsets)), 1e-6);
+}
+
+TEST_F(Moves, LightSettlesAndThenNothingIsDone) {
+  Links links(device(), scene_, settings_);
+  auto offsets = at_rest(scene_);
+  links.solve(offsets);
+  EXPECT_EQ(links.update(offsets, [](std::uint32_t) { return false; }).bounces, 0u);
+  offsets[1].x -= 0.3f;
+  const auto first = links.update(offsets, [](std::uint32_t) { return true; });
+  EXPECT_EQ(first.bounces, 1u);
+  EXPECT_FALSE(first.settled);
+  int maps = 0;
+  while (!links.update(offsets, [](std::uint32_t bounces) { return bounces >= 10; }).settled) ++maps;
+  EXPECT_LE(maps, 3);
+  EXPECT_LT(rel_rmse(links.irradiance(), fresh(scene_, settings_, offsets)), 2e-3);
+  const auto calls = links.times().at("gather").calls;
+  EXPECT_EQ(links.update(offsets, [](std::uint32_t) { return false; }).bounces, 0u);
+  EXPECT_EQ(links.times().at("gather").calls, calls);
+}
+
+TEST_F(LinksMethod, LayersBeyondTheLimitAreCountedAndLinkedAllTheSame) {
+  SceneBuilder builder;
+  const int dark = builder.material(glm::vec3(0)), bright = builder.material(glm::vec3(0), glm::vec3(10));
+  square(builder, "floor", -1, false, chart_a, dark);
+  for (int plate = 0; plate < 11; ++plate) {  // the nearest is drawn last: the first to be lost
+    const float u = 0.02f + 0.08f * static_cast<float>(plate);
+    square(builder, "plate", 1 - 0.1f * static_cast<float>(plate), true, {u, 0.6f, u + 0.06f, 0.9f},
+           plate == 10 ? bright : dark);
+  }
+  const auto scene = loaded(builder);
+  const Settings roomy{.size = 64, .psf = 96, .bounces = 1, .layers = 16},
+      tight{.size = 64, .psf = 96, .bounces = 1, .layers = 1};
+  Links links(device(), scene, tight);
+  const auto solution = links.solve(at_rest(scene));
+  EXPECT_GE(solution.depth_layers_max, 11u);
+  EXPECT_GT(solution.overflow_pixels, 0u);
+  EXPECT_EQ(rel_rmse(links.irradiance(), fresh(scene, roomy)), 0);
+}
+
+TEST_F(LinksMethod, DoubleSidedLampsShineBothWaysAndNotOnThemselves) {
+  for (const bool double_sided : {false, true}) {
+    SceneBuilder builder;
+    square(builder, "lamp", 1, false, chart_a,
+           builder.material(glm::vec3(0), glm::vec3(10), double_sided));  // faces up
+    square(builder, "floor", -1, false, chart_b, builder.material(glm::vec3(0.5)));
+    const auto scene = loaded(builder);
+    const Settings settings{.size = 64, .psf = 384, .bounces = 1, .abuffer = ABuffer::list, .sort = Sort::scan};
+    Thesis thesis(device(), scene, settings);
+    thesis.solve(at_rest(scene));
+    const auto expected = thesis.irradiance(), found = fresh(scene, settings);
+    for (std::size_t texel = 0; texel < found.size(); ++texel)
+      ASSERT_NEAR(found[texel].g, expected[texel].g, 1e-2) << texel;
+  }
+}
+
+TEST_F(LinksMethod, NothingThatEmitsGivesBlack) {
+  const auto scene = furnace(0.5f, 0);
+  Links links(device(), scene, {.size = 32, .psf = 24});
+  EXPECT_EQ(links.solve(at_rest(scene)).residual, 0);
+  for (const auto& texel : links.irradiance()) ASSERT_EQ(glm::vec3(texel), glm::vec3(0));
+}
+
+TEST_F(LinksMethod, RadianceOfAnyMagnitudeScales) {
+  for (const float emission : {1e-6f, 1e6f})
+    for (const auto& texel : fresh(furnace(0.5f, emission), {.size = 32, .psf = 24, .bounces = 2}))
+      if (texel.a > 0) {
+        ASSERT_NEAR(texel.g / (emission * pi * 1.5), 1, 2e-3) << emission;
+      }
+}
+
+}  // namespace
+}  // namespace lichtveld::lightfield
