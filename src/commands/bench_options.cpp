@@ -91,18 +91,6 @@ auto one_of(const std::string& option, const std::vector<Value>& choices, Name n
   };
 }
 
-PsfSize parse_psf_size(std::string word) {
-  const auto wrong =
-      UsageError("--psf-size " + word + ": a number of pixels a side, or as in 2x of pixels a texel");
-  PsfSize size;
-  size.a_texel = word.ends_with('x');
-  if (size.a_texel) word.pop_back();
-  if (!CLI::detail::lexical_cast(word, size.value) || size.value < 1 || size.value > 4096 ||
-      word.front() == '-')
-    throw wrong;
-  return size;
-}
-
 template <typename Value>
 void each_once(const std::string& option, std::vector<Value>& values) {
   std::vector<Value> once;
@@ -149,12 +137,12 @@ void add_bench_options(CLI::App& command, BenchOptions& options) {
       command, "--psf-size", sweep.psf_sizes, parse_psf_size,
       "Pixels a side of a PSF, or as in 2x so many for each texel of the atlas' side. The first goes with "
       "every row, others only with the last A-buffer")
-      ->type_name("N|Nx,..")
+      ->type_name("N|Fx,..")
       ->default_str(defaults("1x,2x", "1x"));
   add_words(
       command, "--weights", sweep.weights,
       one_of<Weights>("--weights", {Weights::solid_angle, Weights::equal},
-                      [](Weights w) { return word_for(w); }),
+                      [](Weights w) { return name_of(w); }),
       "What a direction counts for: its solid angle, or as much as any other. The first goes with every row, "
       "others only with the last A-buffer")
       ->type_name("solid-angle|equal,..")

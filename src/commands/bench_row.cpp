@@ -15,10 +15,6 @@ double percentile(std::vector<double> values, double share) {
   return values[static_cast<std::size_t>(std::ceil(share * static_cast<double>(values.size() - 1)))];
 }
 
-std::string word_for(lightfield::Weights weights) {
-  return weights == lightfield::Weights::solid_angle ? "solid-angle" : "equal";
-}
-
 std::string csv_cell(const std::string& text) {
   if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
   std::string quoted = "\"";

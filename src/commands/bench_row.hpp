@@ -34,9 +34,6 @@ double median(std::vector<double> values);
 // The value that a share of the list does not exceed: 0.95 for the 95th percentile.
 double percentile(std::vector<double> values, double share);
 
-// "solid-angle", "equal": as --weights has them.
-std::string word_for(lightfield::Weights weights);
-
 // Text as a cell of a .csv file: in quotes if it would not be one otherwise.
 std::string csv_cell(const std::string& text);
 

@@ -16,10 +16,6 @@ std::string cell(double value, const char* format = "{:.6g}") {
   return std::isfinite(value) ? fmt::format(fmt::runtime(format), value) : "";
 }
 
-std::uint32_t pixels_of(const lightfield::Settings& settings) {
-  return settings.psf_size == 0 ? settings.size : settings.psf_size;
-}
-
 std::string name_of_method(const BenchRow& row) {
   if (row.method == Method::reference) return "path tracing";
   if (row.method == Method::links) return name_of(row.method);
@@ -57,7 +53,7 @@ std::string chart_csv(const std::vector<BenchRow>& rows) {
                        s.size, traced ? "" : std::to_string(s.psf), name_of_bounces(s), median(row.total_ms),
                        *std::min_element(row.total_ms.begin(), row.total_ms.end()), cell(row.error.rel_rmse),
                        cell(row.error.rel_p99), cell(row.error.rel_max), cell(row.error.bias),
-                       traced ? "" : std::to_string(pixels_of(s)), traced ? "" : word_for(s.weights),
+                       traced ? "" : std::to_string(s.raster()), traced ? "" : name_of(s.weights),
                        traced ? "" : cell(row.error_estimate), traced ? std::to_string(row.spp) : "");
   }
   return csv;

@@ -1,5 +1,6 @@
 #include "options.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 
@@ -45,16 +46,6 @@ void add_choice(CLI::App& command, const std::string& option, Value& value,
           help)
       ->type_name(choices)
       ->default_str(key_of(names, value));
-}
-
-// "512" pixels, or "2x" the texels of an atlas of `size`.
-std::uint32_t parse_psf_size(const std::string& text, std::uint32_t size) {
-  const bool factor = text.ends_with('x');
-  double value = 0;
-  if (!CLI::detail::lexical_cast(factor ? text.substr(0, text.size() - 1) : text, value) || !(value > 0) ||
-      !(value <= 8192))
-    throw UsageError("--psf-size " + text + ": a number of pixels from 16, or of times the atlas, as in 2x");
-  return static_cast<std::uint32_t>(std::lround(factor ? value * size : value));
 }
 
 }  // namespace
@@ -112,7 +103,9 @@ void add_quality_options(CLI::App& command, lightfield::Settings& settings) {
   command
       .add_option_function<std::string>(
           "--psf-size",
-          [&settings](const std::string& text) { settings.psf_size = parse_psf_size(text, settings.size); },
+          [&settings](const std::string& text) {
+            settings.psf_size = parse_psf_size(text).pixels(settings.size);
+          },
           "Pixels a side of a PSF's raster, or how many a texel of the light map has: 2x is nearly as exact as "
           "ray casting, and takes up to four times as long")
       ->type_name("N|Fx")
@@ -124,6 +117,21 @@ void add_quality_options(CLI::App& command, lightfield::Settings& settings) {
       .add_option("--seed", settings.seed,
                   "Of all that is random: rotations and rasters of the directions, paths of the reference")
       ->capture_default_str();
+}
+
+std::uint32_t PsfSize::pixels(std::uint32_t size) const {
+  if (times && value == 1) return 0;  // the settings' word for it
+  return static_cast<std::uint32_t>(std::max(std::lround(times ? value * size : value), 1L));
+}
+
+PsfSize parse_psf_size(const std::string& text) {
+  PsfSize size{.times = text.ends_with('x')};
+  const auto number = size.times ? text.substr(0, text.size() - 1) : text;
+  if (!CLI::detail::lexical_cast(number, size.value) || !(size.value > 0 && size.value <= 8192) ||
+      (!size.times && size.value != std::floor(size.value)))
+    throw UsageError("--psf-size " + text +
+                     ": a number of pixels a side, 16..8192, or as in 2x of times the size");
+  return size;
 }
 
 std::optional<std::uint32_t> parse_bounces(const std::string& text) {

@@ -34,6 +34,19 @@ void add_light_field_options(CLI::App& command, lightfield::Settings& settings);
 // --size, --psf, --psf-size, --weights, --seed: what a light field's error depends on.
 void add_quality_options(CLI::App& command, lightfield::Settings& settings);
 
+// The side of a PSF's raster: so many pixels, or so many times the light map's texels.
+struct PsfSize {
+  double value = 1;
+  bool times = true;
+  bool operator==(const PsfSize&) const = default;
+
+  // Settings::psf_size for a light map of `size` texels a side.
+  std::uint32_t pixels(std::uint32_t size) const;
+};
+
+// "512", "2x" or "0.5x". Throws UsageError for anything else.
+PsfSize parse_psf_size(const std::string& text);
+
 // "auto" (nothing) or a number from 1. Throws UsageError for anything else.
 std::optional<std::uint32_t> parse_bounces(const std::string& text);
 

@@ -12,8 +12,7 @@ namespace lichtveld::commands {
 namespace {
 
 std::string name_of_variant(const lightfield::Settings& settings) {
-  return fmt::format("{} weights, PSFs of {}² pixels", word_for(settings.weights),
-                     settings.psf_size == 0 ? settings.size : settings.psf_size);
+  return fmt::format("{} weights, PSFs of {}² pixels", name_of(settings.weights), settings.raster());
 }
 
 // Rows of the A-buffer and sort of the panel's last one (which all variants have), a curve for each variant.

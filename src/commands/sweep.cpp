@@ -46,11 +46,6 @@ bool is_shown(const BenchRow& row, const SweepOptions& options) {
          row.settings.sort == curve_sort(row.settings.abuffer, options);
 }
 
-std::uint32_t pixels(PsfSize psf_size, std::uint32_t size) {
-  if (!psf_size.a_texel) return psf_size.value;
-  return psf_size.value == 1 ? 0 : psf_size.value * size;  // 0 is the settings' word for one a texel
-}
-
 void measure(BenchRow& row, const gpu::Device& device, const scene::Scene& scene) {
   const auto solver = make_solver(row.method, device, scene, row.settings);
   const std::vector<glm::vec3> at_rest(scene.bodies.size(), glm::vec3(0));
@@ -129,7 +124,7 @@ BenchRow trace_paths(const scene::Scene& scene, const Truth& truth, std::uint32_
 std::vector<BenchRow> rows_of(const std::string& scene, const SweepOptions& options) {
   std::vector<BenchRow> rows;
   const auto add = [&](Method method, Settings settings, PsfSize psf_size, bool side) {
-    settings.psf_size = pixels(psf_size, settings.size);
+    settings.psf_size = psf_size.pixels(settings.size);
     lightfield::check(settings);
     rows.push_back({.scene = scene, .method = method, .settings = settings, .side = side});
   };
@@ -166,7 +161,7 @@ Settings curve_settings(ABuffer abuffer, std::uint32_t size, std::uint32_t psf, 
   Settings settings{.size = size, .psf = psf, .bounces = options.bounces.front()};
   settings.abuffer = abuffer;
   settings.sort = curve_sort(abuffer, options);
-  settings.psf_size = pixels(options.psf_sizes.front(), size);
+  settings.psf_size = options.psf_sizes.front().pixels(size);
   settings.weights = options.weights.front();
   return settings;
 }

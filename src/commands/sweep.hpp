@@ -11,13 +11,6 @@
 
 namespace lichtveld::commands {
 
-// The side of a PSF's raster: so many pixels, or so many for each texel of the atlas' side.
-struct PsfSize {
-  std::uint32_t value = 1;
-  bool a_texel = true;
-  bool operator==(const PsfSize&) const = default;
-};
-
 struct SweepOptions {
   std::vector<std::uint32_t> sizes, psfs;
   std::vector<std::optional<std::uint32_t>> bounces;
