@@ -59,6 +59,13 @@ std::vector<Case> lamp_cases();        // lamps and openings that get small
 std::vector<Case> separation_cases();  // light where there must be none, and layers that must not be lost
 std::vector<Case> mesh_cases();        // geometry and atlases as they should not be
 
+// Why stencil routing fails in cases of several themes.
+inline constexpr const char* silhouettes =
+    "stencil routing takes a layer at its sample's place, not at the pixel's centre that depths are compared "
+    "at, so that where an outline crosses a pixel a layer is lost or taken twice (docs/algorithm.md, "
+    "Accuracy). The light that it sends is missed then, or what lies behind it is seen in its place. The list "
+    "loses none; more pixels (`--psf-size`, `--size`) make silhouettes thinner.";
+
 // A figure that `directions` of a regular set decide: they lie in the lamp's outline as points of a lattice do,
 // so that those near the outline, about the root of their number, are in or out by chance, which leaves about
 // N^(1/4) of N wrong. Twice that holds for 95 of 100 lamps.

@@ -15,10 +15,6 @@ constexpr float le = 10;  // of the lamps [W m^-2 sr^-1]
 constexpr const char* many_texels =
     "2 %: of N = 153 directions that hit the lamp its outline leaves 2 N^-3/4 = 4.6 % to chance in one texel, "
     "and the mean over 24 x 24 texels less than half of that; the midpoint rule over them is 0.2 % off.";
-constexpr const char* against_the_void =
-    "where a texel's PSF pixel is empty its neighbours are asked, so that silhouettes against the void are up "
-    "to half a pixel wide of the mark: of 37 pixels across. In a closed room no pixel is empty. More pixels: "
-    "`--psf-size`, `--size`; or close the scene.";
 
 // A lamp that the floor (y = 0, side 2 * floor_half) sees. The rest of the scene is `surroundings`.
 Case factor(const std::string& name, const std::string& formula, double exact,
@@ -66,8 +62,7 @@ std::vector<Case> factor_cases() {
           parallel_squares, at_the_ceiling, [](SceneBuilder& builder) { black_room(builder, "ceiling"); },
           {{{0.02}, {0.02}, {0.002}}}, many_texels),
       factor("parallel_squares_open", "The same without walls: F = 0.199825 (Howell, C-11).", parallel_squares,
-             at_the_ceiling, nothing, {{{0.02, 0.08}, {0.02, 0.08}, {0.002}}}, many_texels, 1,
-             against_the_void),
+             at_the_ceiling, nothing, {{{0.02}, {0.02}, {0.002}}}, many_texels),
       factor(
           "perpendicular_squares", "Floor and wall of a black cube: F = 0.200044 (Howell, C-14).",
           perpendicular_squares,
@@ -79,10 +74,10 @@ std::vector<Case> factor_cases() {
           "disc_on_its_axis",
           "A disc of radius 1/2 at height 1 in a black cube: F = r^2 / (r^2 + h^2) = 0.2 (Howell, B-12).", 0.2,
           [](SceneBuilder& builder, int lamp) { disc(builder, "lamp", {0, 1, 0}, 0.5f, chart_a, lamp); },
-          [](SceneBuilder& builder) { black_room(builder); }, {{{round}, {round}, {0.002}}},
+          [](SceneBuilder& builder) { black_room(builder); }, {{{round, 0.1}, {round}, {0.002}}},
           "the floor is a point, 2 mm wide: nothing averages what the outline leaves to chance, 2 N^-3/4 of N "
           "= 154 directions.",
-          1e-3f),
+          1e-3f, silhouettes),
       factor(
           "narrow_gap", "Squares of side 2 at 2 cm, which is half a pixel: F by Howell, B-3, over the floor.",
           opposite_squares(0.02),

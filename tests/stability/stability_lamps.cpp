@@ -124,7 +124,7 @@ std::vector<Case> lamp_cases() {
                      {{{0.05, 40}, {0.05, 40}, {0.02}}}),
       slit("slit_4_pixels", 4, {{{opening, 0.2}, {opening}, {0.01}}}, {{{0.05, 0.3}, {0.05, 0.25}, {0.05}}}),
       slit("slit_1_pixel", 1, {{{opening, 0.7}, {opening}, {0.02}}}, {{{0.05, 1.2}, {0.05, 0.8}, {0.05}}}),
-      slit("slit_quarter_pixel", 0.25, {{{opening, 2.5}, {opening, 0.6}, {0.04}}},
+      slit("slit_quarter_pixel", 0.25, {{{opening, 2.5}, {opening}, {0.04}}},
            {{{0.05, 4}, {0.05, 2.5}, {0.05}}}),
   };
 }

@@ -1,0 +1,110 @@
+// Solution::error_estimate against the error there is: the reference's answer, its own noise taken off.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+
+#include "device_for_tests.hpp"
+#include "known_scenes.hpp"
+#include "lichtveld/lightfield/thesis.hpp"
+#include "lichtveld/reference/error.hpp"
+#include "lichtveld/reference/path_tracer.hpp"
+
+namespace lichtveld::stability {
+namespace {
+
+using namespace testing;
+
+struct EstimatedScene {
+  std::string name;
+  std::function<scene::Scene()> load;
+  std::vector<glm::vec3> offsets = {};  // of the bodies [m]
+};
+
+void PrintTo(const EstimatedScene& of, std::ostream* out) {
+  *out << of.name;
+}
+
+scene::Scene cornell() {
+  return scene::load(LICHTVELD_SOURCE_DIR "/assets/cornell.glb");
+}
+
+// A lamp under the ceiling, and three pillars from floor to ceiling.
+scene::Scene pillars() {
+  SceneBuilder builder;
+  builder.box("room", {-2, 0, -2}, {2, 3, 2}, {0, 0, 1, 0.5f}, builder.material(glm::vec3(0.7f, 0.6f, 0.5f)),
+              true);
+  builder.quad("lamp",
+               {glm::vec3(-0.7f, 2.9f, -0.7f), {0.7f, 2.9f, -0.7f}, {0.7f, 2.9f, 0.7f}, {-0.7f, 2.9f, 0.7f}},
+               {0.8f, 0.6f, 0.95f, 0.75f}, builder.material(glm::vec3(0.5f), glm::vec3(10, 9, 8)));
+  const int grey = builder.material(glm::vec3(0.5f));
+  float u = 0;
+  for (const glm::vec2 at : {glm::vec2(-1.2f, -1), {0.9f, -1.1f}, {0.2f, 1.2f}}) {
+    builder.box("pillar", {at.x - 0.2f, 0, at.y - 0.2f}, {at.x + 0.2f, 3, at.y + 0.2f}, {u, 0.5f, u + 0.25f, 1},
+                grey);
+    u += 0.25f;
+  }
+  return loaded(builder);
+}
+
+// A floor and a wall at its back under the void, a block, and a lamp above them.
+scene::Scene stage() {
+  SceneBuilder builder;
+  const int white = builder.material(glm::vec3(0.7f)), red = builder.material(glm::vec3(0.7f, 0.2f, 0.1f));
+  square(builder, "floor", 0, false, {0.05f, 0.05f, 0.45f, 0.45f}, white, 2);
+  builder.quad("back", {glm::vec3(-2, 0, -2), {2, 0, -2}, {2, 2, -2}, {-2, 2, -2}},
+               {0.55f, 0.05f, 0.95f, 0.25f}, red);
+  square(builder, "lamp", 2.5f, true, {0.55f, 0.3f, 0.7f, 0.45f}, builder.material(glm::vec3(0), glm::vec3(10)),
+         0.8f);
+  builder.box("block", {-0.8f, 0, -0.6f}, {0.2f, 0.9f, 0.4f}, {0, 0.5f, 1, 1}, white);
+  return loaded(builder);
+}
+
+// 12 m long, lit at one end, with a crate half way.
+scene::Scene corridor() {
+  SceneBuilder builder;
+  builder.box("corridor", {-6, 0, -1}, {6, 2.5f, 1}, {0, 0, 1, 0.6f},
+              builder.material(glm::vec3(0.6f, 0.7f, 0.6f)), true);
+  builder.quad("lamp", {glm::vec3(-5, 2.4f, -0.6f), {-3, 2.4f, -0.6f}, {-3, 2.4f, 0.6f}, {-5, 2.4f, 0.6f}},
+               {0.8f, 0.65f, 0.95f, 0.95f}, builder.material(glm::vec3(0.5f), glm::vec3(10)));
+  builder.box("crate", {0, 0, -0.7f}, {1, 1, 0.3f}, {0, 0.6f, 0.75f, 1}, builder.material(glm::vec3(0.4f)));
+  return loaded(builder);
+}
+
+class ErrorEstimate : public WithDevice, public ::testing::WithParamInterface<EstimatedScene> {};
+
+TEST_P(ErrorEstimate, IsWithinAFactorOfOneAndAHalf) {
+  constexpr std::uint32_t size = 64, bounces = 3;
+  const auto scene = GetParam().load();
+  auto offsets = GetParam().offsets;
+  offsets.resize(scene.bodies.size(), glm::vec3(0));
+  const auto truth = reference::trace(scene, offsets, {.size = size, .bounces = bounces, .spp = 1024});
+  const double noise = reference::expected_rel_rmse(truth);
+  for (const std::uint32_t psf : {24u, 96u, 384u}) {
+    lightfield::Thesis thesis(device(), scene,
+                              {.size = size,
+                               .psf = psf,
+                               .bounces = bounces,
+                               .abuffer = lightfield::ABuffer::list,
+                               .sort = lightfield::Sort::scan});
+    const double estimate = thesis.solve(offsets).error_estimate,
+                 measured = reference::error_of(thesis.irradiance(), truth.texels).rel_rmse;
+    ASSERT_GT(measured, 2 * noise) << "the reference's noise hides what is measured";
+    const double error = std::sqrt(measured * measured - noise * noise);
+    std::printf("%-18s %4u PSFs: estimate %6.2f %%, true %6.2f %%, ratio %.2f (noise %.2f %%)\n",
+                GetParam().name.c_str(), psf, 100 * estimate, 100 * error, estimate / error, 100 * noise);
+    EXPECT_LT(estimate / error, 1.5) << psf;
+    EXPECT_GT(estimate / error, 1 / 1.5) << psf;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Scenes, ErrorEstimate,
+    ::testing::Values(EstimatedScene{"cornell", cornell},
+                      EstimatedScene{"cornell_moved", cornell, {{}, {-0.5f, 0.4f, 0.2f}, {0.4f, 0.3f, -0.3f}}},
+                      EstimatedScene{"pillars", pillars}, EstimatedScene{"stage", stage},
+                      EstimatedScene{"corridor", corridor}),
+    [](const auto& scene) { return scene.param.name; });
+
+}  // namespace
+}  // namespace lichtveld::stability
