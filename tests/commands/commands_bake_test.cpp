@@ -23,7 +23,7 @@ class Bake : public ::testing::Test {
   std::vector<float> bake(const std::string& name, const std::string& options = "") {
     const auto ran =
         run("bake " + cornell + " --validation --size 64 --bounces 2 --out " + path(name) + " " +
-            (options.find("--psf") == std::string::npos && options.find("reference") == std::string::npos
+            (options.find("--psf ") == std::string::npos && options.find("reference") == std::string::npos
                  ? "--psf 24 "
                  : "") +
             options);
@@ -57,6 +57,9 @@ TEST_F(Bake, ReportsWhatItDid) {
   EXPECT_EQ(report["method"], "thesis");
   EXPECT_EQ(report["size"], 64);
   EXPECT_EQ(report["psf"], 24);
+  EXPECT_EQ(report["psf_size"], 64);
+  EXPECT_EQ(report["weights"], "solid-angle");
+  EXPECT_EQ(report["seed"], 0);
   EXPECT_EQ(report["layers"], 8);
   EXPECT_EQ(report["bounces_used"], 2);
   EXPECT_GT(report["residual"], 0);
@@ -65,7 +68,11 @@ TEST_F(Bake, ReportsWhatItDid) {
   EXPECT_EQ(report["texels_valid"], valid);
   EXPECT_GE(report["depth_layers_max"], 2);
   EXPECT_EQ(report["overflow_pixels"], 0);
-  EXPECT_LT(report["miss_fraction"], 0.01);
+  EXPECT_LT(report["miss_fraction"], 0.03) << "the room is closed; stencil routing loses a layer here and there";
+  EXPECT_GT(report["unknown_fraction"], 0) << "texels at the feet of walls have rays without a pixel";
+  EXPECT_LT(report["unknown_fraction"], 0.05);
+  EXPECT_GT(report["error_estimate"], 0.01);
+  EXPECT_LT(report["error_estimate"], 1);
   EXPECT_GT(report["time_ms"]["total"], 0);
   for (const char* pass :
        {"geometry_texture", "emit_radiance", "stencil_routing", "blend", "brdf", "tone_map"}) {
@@ -80,6 +87,25 @@ TEST_F(Bake, ReportsWhatItDid) {
   const OIIO::ImageBuf map(path("map.png"));
   EXPECT_EQ(map.spec().width, 64);
   EXPECT_EQ(map.nchannels(), 3);
+}
+
+TEST_F(Bake, TakesItsPsfSizeInPixelsOrTimesTheSize) {
+  const auto usual = bake("1.exr");
+  const auto report = [&] { return json::parse(std::ifstream(path("r.json"))); };
+  EXPECT_NE(bake("2.exr", "--psf-size 2x --report " + path("r.json")), usual);
+  EXPECT_EQ(report()["psf_size"], 128);
+  EXPECT_NE(bake("3.exr", "--psf-size 0.5x --report " + path("r.json")), usual);
+  EXPECT_EQ(report()["psf_size"], 32);
+  EXPECT_EQ(bake("4.exr", "--psf-size 64 --report " + path("r.json")), usual);
+  EXPECT_EQ(report()["psf_size"], 64);
+}
+
+TEST_F(Bake, ReportsWeightsAndSeed) {
+  const auto usual = bake("1.exr");
+  EXPECT_NE(bake("2.exr", "--weights equal --seed 3 --report " + path("r.json")), usual);
+  const auto report = json::parse(std::ifstream(path("r.json")));
+  EXPECT_EQ(report["weights"], "equal");
+  EXPECT_EQ(report["seed"], 3);
 }
 
 TEST_F(Bake, LiveMovesEndWhereAFreshBakeDoes) {

@@ -1,6 +1,7 @@
 // The direction sets and their views.
 #include <gmock/gmock.h>
 
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -47,6 +48,53 @@ TEST_P(DirectionSet, IntegratesACosine) {
       sum += std::max(0.0f, -glm::dot(normal, direction.along)) * direction.solid_angle;
     EXPECT_NEAR(sum, std::numbers::pi, 3.0 / std::sqrt(GetParam()));
   }
+}
+
+// Each half is a set of its own, so that either's answer is one.
+TEST_P(DirectionSet, HasTwoHalvesThatCoverTheSphereEach) {
+  std::array<std::uint32_t, 2> counts{};
+  std::array<double, 2> sums{};
+  for (const auto& direction : directions(GetParam())) {
+    ++counts.at(direction.half);
+    sums.at(direction.half) += direction.solid_angle;
+  }
+  for (const int half : {0, 1}) {
+    EXPECT_EQ(counts[half], GetParam() / 2);
+    EXPECT_NEAR(sums[half], 2 * std::numbers::pi, 1e-4);
+  }
+}
+
+// The halves have the same cells in the same order: turned alike, they would have the same directions.
+TEST_P(DirectionSet, TurnsItsHalvesApart) {
+  const auto set = directions(GetParam());
+  const std::size_t cells = GetParam() / 4;
+  for (std::size_t cell = 0; cell < cells; ++cell) {
+    EXPECT_EQ(set[cell].half, 0u);
+    EXPECT_EQ(set[cells + cell].half, 1u);
+    EXPECT_EQ(set[cell].solid_angle, set[cells + cell].solid_angle);
+    EXPECT_GT(glm::distance(set[cell].along, set[cells + cell].along), 1e-3);
+    EXPECT_NE(set[cell].roll, set[cells + cell].roll);
+    EXPECT_NE(set[cell].jitter, set[cells + cell].jitter);
+  }
+}
+
+TEST_P(DirectionSet, DependsOnTheSeedAlone) {
+  const auto set = directions(GetParam(), Weights::solid_angle, 7),
+             again = directions(GetParam(), Weights::solid_angle, 7),
+             other = directions(GetParam(), Weights::solid_angle, 8);
+  for (std::size_t index = 0; index < set.size(); ++index) {
+    EXPECT_EQ(set[index].along, again[index].along);
+    EXPECT_EQ(set[index].roll, again[index].roll);
+    EXPECT_EQ(set[index].jitter, again[index].jitter);
+    EXPECT_GT(glm::distance(set[index].along, other[index].along), 1e-3);
+    EXPECT_NE(set[index].roll, other[index].roll);
+    EXPECT_EQ(set[index].solid_angle, other[index].solid_angle);
+  }
+}
+
+TEST_P(DirectionSet, EqualWeightsAreOneShareEach) {
+  for (const auto& direction : directions(GetParam(), Weights::equal))
+    EXPECT_FLOAT_EQ(direction.solid_angle, static_cast<float>(4 * std::numbers::pi / GetParam()));
 }
 
 INSTANTIATE_TEST_SUITE_P(All, DirectionSet,

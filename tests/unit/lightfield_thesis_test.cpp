@@ -15,6 +15,7 @@ namespace {
 using lichtveld::testing::Chart;
 using lichtveld::testing::SceneBuilder;
 using lichtveld::testing::TempFolder;
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 constexpr double pi = std::numbers::pi;
 
@@ -255,6 +256,8 @@ TEST_F(ThesisMethod, SettingsOutOfRangeAreRefusedByName) {
   EXPECT_THAT(refusal({.size = 8}), HasSubstr("16..4096"));
   EXPECT_THAT(refusal({.size = 100000}), HasSubstr("16..4096"));
   EXPECT_THAT(refusal({.psf = 100}), HasSubstr("8, 24, 32"));
+  EXPECT_THAT(refusal({.psf_size = 15}), AllOf(HasSubstr("PSF raster of 15"), HasSubstr("16..8192")));
+  EXPECT_THAT(refusal({.psf_size = 8193}), AllOf(HasSubstr("PSF raster of 8193"), HasSubstr("16..8192")));
   EXPECT_THAT(refusal({.bounces = 0}), HasSubstr("0 bounces"));
   EXPECT_THAT(refusal({.layers = 0}), HasSubstr("1..128"));
   EXPECT_THAT(refusal({.layers = 129}), HasSubstr("1..128"));
