@@ -36,6 +36,9 @@ bool chart_reaches(ivec2 texel, vec3 p, vec3 away) {
   return true;
 }
 
+// Of the margin: rounding of places in 32 bits.
+const float ON_A_WALL = 0.1;
+
 // Whether wall `wall` stands between p and the place `away` from it. Within `margin` of a wall [m] the rasteriser may have
 // put a centre on either side.
 bool is_between(uint wall, vec3 p, vec3 away, vec3 face, float margin, bool rising_only) {
@@ -46,10 +49,12 @@ bool is_between(uint wall, vec3 p, vec3 away, vec3 face, float margin, bool risi
   if (width == 0.0) return false;
   const vec3 along = edge / width, across = cross(face, along);
   float here = dot(p - a, across), there = here + dot(away, across);
-  if (here < 0.0) {
+  // A texel on the line itself belongs to its triangle's middle, which is where `across` points.
+  if (here < -ON_A_WALL * margin) {
     here = -here;
     there = -there;
   }
+  here = max(here, 0.0);
   if (there > min(margin, 0.5 * here)) return false;
   const float share = there < here ? clamp(here / max(here - there, 1e-30), 0.0, 1.0) : 1.0;
   const float place = dot(p + share * away - a, along);

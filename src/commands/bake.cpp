@@ -89,6 +89,7 @@ void add_bake(CLI::App& application) {
       ->capture_default_str();
   add_device_options(*command, options->device);
   command->callback([options, command] {
+    choose_method(*command, options->method);
     // What the other method would take is a mistake, not something to pass over in silence.
     const std::vector<std::string> of_others =
         options->method == Method::reference

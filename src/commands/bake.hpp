@@ -15,7 +15,7 @@ struct BakeOptions {
   std::uint32_t dump_psf = 0;
   std::vector<std::string> moves;
   bool live = false;
-  Method method = Method::thesis;
+  Method method = Method::links;
   gpu::DeviceOptions device;
   lightfield::Settings settings;
   std::uint32_t spp = 256;  // of the reference

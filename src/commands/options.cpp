@@ -82,12 +82,21 @@ void add_method_option(CLI::App& command, Method& method, const std::vector<Meth
   add_choice(command, "--method", method, names, help);
 }
 
+void choose_method(const CLI::App& command, Method& method) {
+  if (command.count("--method") > 0) return;
+  for (const char* name : {"--abuffer", "--sort", "--dump", "--dump-psf"})
+    if (const auto* option = command.get_option_no_throw(name); option != nullptr && option->count() > 0)
+      method = Method::thesis;
+}
+
 void add_light_field_options(CLI::App& command, lightfield::Settings& settings) {
   add_choice(command, "--abuffer", settings.abuffer, abuffers,
-             "How a PSF keeps all its layers: routed by the stencil to the samples of a pixel, or in a list of "
+             "Of --method thesis, and asks for it: how a PSF keeps all its layers: routed by the stencil to "
+             "the samples of a pixel, or in a list of "
              "each pixel");
   add_choice(command, "--sort", settings.sort, sorts,
-             "How a texel finds its layer: sorting them, or scanning for the nearest in front");
+             "Of --method thesis, and asks for it: how a texel finds its layer: sorting them, or scanning for "
+             "the nearest in front");
   command
       .add_option(
           "--layers", settings.layers,

@@ -28,6 +28,9 @@ enum class Method { thesis, links, reference };
 // --method: one of these; others are refused by name.
 void add_method_option(CLI::App& command, Method& method, const std::vector<Method>& choices);
 
+// Without --method, options that only the thesis' method has ask for it. After the command line is read.
+void choose_method(const CLI::App& command, Method& method);
+
 // --abuffer, --sort, --layers: how a light field is computed, whatever its quality.
 void add_light_field_options(CLI::App& command, lightfield::Settings& settings);
 

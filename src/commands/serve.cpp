@@ -175,6 +175,9 @@ void add_serve(CLI::App& application) {
   add_light_field_options(*command, options->settings);
   add_device_options(*command, options->device);
   command->callback([options, command] {
+    choose_method(*command, options->method);
+    if (options->method == Method::links && (command->count("--abuffer") > 0 || command->count("--sort") > 0))
+      throw UsageError("--abuffer and --sort mean nothing to --method links; leave them out");
     options->chosen_quality = command->count("--size") + command->count("--psf") > 0;
     serve(*options);
   });

@@ -55,6 +55,8 @@ std::optional<Wall> wall_on(const Triangle& floor, const Triangle& other, double
   if (found < 2) return std::nullopt;
   // A gap below it does not put the line beside the plane.
   for (auto& end : ends) end -= floor.normal * glm::dot(floor.normal, end - floor.corners[0]);
+  const glm::dvec3 inside = (floor.corners[0] + floor.corners[1] + floor.corners[2]) / 3.0;
+  if (glm::dot(glm::cross(floor.normal, ends[1] - ends[0]), inside - ends[0]) < 0) std::swap(ends[0], ends[1]);
   return Wall{glm::vec3(ends[0]), glm::vec3(ends[1]), highest > 0};
 }
 

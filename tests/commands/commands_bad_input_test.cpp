@@ -48,14 +48,19 @@ INSTANTIATE_TEST_SUITE_P(
         BadUse{"NoOut", "bake " + cornell, 2, {"--out"}},
         BadUse{"NoScene", "bake nowhere.glb --out OUT", 2, {"nowhere.glb"}},
         BadUse{"SceneIsAFolder", "bake /tmp --out OUT", 2, {"/tmp"}},
-        BadUse{"Links", bake + "--method links", 2, {"links", "thesis"}},
+        BadUse{"LinksWithASort", bake + "--method links --sort scan", 2, {"--sort", "links", "leave it out"}},
+        BadUse{"ServeLinksWithAnABuffer",
+               "serve --method links --abuffer list --scene " + cornell +
+                   " --signaling ws://127.0.0.1:1/server --token-file nowhere",
+               2,
+               {"--abuffer", "links"}},
         BadUse{"ServeReference",
                "serve --method reference --scene " + cornell +
                    " --signaling ws://127.0.0.1:1/server --token-file nowhere",
                2,
                {"reference", "thesis"}},
         BadUse{"ReferenceWithPsf", bake + "--method reference", 2, {"--psf", "reference", "leave it out"}},
-        BadUse{"ThesisWithSpp", bake + "--spp 16", 2, {"--spp", "thesis", "leave it out"}},
+        BadUse{"LinksWithSpp", bake + "--spp 16", 2, {"--spp", "links", "leave it out"}},
         BadUse{"DumpPsf", bake + "--dump-psf 8", 2, {"--dump-psf 8", "0..7"}},
         BadUse{"DumpIntoAFile", bake + "--dump /dev/null", 2, {"/dev/null", "folder"}},
         BadUse{"OutIsNoExr", "bake " + cornell + " --out OUT.png --psf 8", 2, {".exr"}},
@@ -183,7 +188,7 @@ TEST(Serve, EndsOnASecondSignalWhateverItDoes) {
   const TempFolder folder;
   const auto token = folder.write("token", "secret").string();
   // A first light map of minutes, which the first signal waits for.
-  const auto ran = shell(LICHTVELD_BINARY " serve --size 1024 --psf 6144 --scene " + cornell +
+  const auto ran = shell(LICHTVELD_BINARY " serve --method thesis --size 1024 --psf 6144 --scene " + cornell +
                          " --signaling ws://127.0.0.1:1/server --token-file " + token +
                          " >/dev/null 2>&1 & p=$!; sleep 1; kill $p; sleep 2; kill $p; wait $p");
   EXPECT_EQ(ran.status, 128 + SIGTERM);

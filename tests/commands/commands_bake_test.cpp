@@ -13,6 +13,7 @@ namespace lichtveld::testing {
 namespace {
 
 using nlohmann::json;
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 class Bake : public ::testing::Test {
@@ -51,7 +52,7 @@ TEST_F(Bake, WritesFloatRgbaWithValidTexelsInAlpha) {
 }
 
 TEST_F(Bake, ReportsWhatItDid) {
-  const auto values = bake("E.exr", "--report " + path("r.json") + " --png " + path("map.png"));
+  const auto values = bake("E.exr", "--method thesis --report " + path("r.json") + " --png " + path("map.png"));
   const auto report = json::parse(std::ifstream(path("r.json")));
   EXPECT_THAT(report["device"].get<std::string>(), HasSubstr("llvmpipe"));
   EXPECT_EQ(report["method"], "thesis");
@@ -68,7 +69,8 @@ TEST_F(Bake, ReportsWhatItDid) {
   EXPECT_EQ(report["texels_valid"], valid);
   EXPECT_GE(report["depth_layers_max"], 2);
   EXPECT_EQ(report["overflow_pixels"], 0);
-  EXPECT_LT(report["miss_fraction"], 0.03) << "the room is closed; stencil routing loses a layer here and there";
+  EXPECT_LT(report["miss_fraction"], 0.03)
+      << "the room is closed; stencil routing loses a layer here and there";
   EXPECT_GT(report["unknown_fraction"], 0) << "texels at the feet of walls have rays without a pixel";
   EXPECT_LT(report["unknown_fraction"], 0.05);
   EXPECT_GT(report["error_estimate"], 0.01);
@@ -108,6 +110,33 @@ TEST_F(Bake, ReportsWeightsAndSeed) {
   EXPECT_EQ(report["seed"], 3);
 }
 
+TEST_F(Bake, LinksAreTheUsualMethodAndSayWhatTheyTake) {
+  bake("E.exr", "--report " + path("r.json"));
+  const auto report = json::parse(std::ifstream(path("r.json")));
+  EXPECT_EQ(report["method"], "links");
+  EXPECT_EQ(report["bounces_used"], 2);
+  EXPECT_GT(report["error_estimate"], 0);
+  EXPECT_EQ(report["memory_bytes"]["lightfield/links 0"], 2 * 12 * report["texels_valid"].get<int>());
+  for (const char* pass : {"geometry_texture", "emit_links", "route_links", "gather", "brdf", "tone_map"})
+    EXPECT_GT(report["time_ms"]["passes"][pass]["calls"], 0) << pass;
+}
+
+TEST_F(Bake, OptionsOfTheThesisAskForIt) {
+  for (const char* option : {"--abuffer list", "--sort scan"}) {
+    bake("E.exr", std::string(option) + " --report " + path("r.json"));
+    EXPECT_EQ(json::parse(std::ifstream(path("r.json")))["method"], "thesis");
+  }
+}
+
+TEST(Links, ThatDoNotFitAreRefusedBeforeTheyAreMade) {
+  const TempFolder folder;
+  const auto ran =
+      run("bake " + cornell + " --size 2048 --psf 6144 --out " + (folder.path() / "E.exr").string());
+  EXPECT_EQ(ran.status, 1);
+  EXPECT_THAT(ran.output, AllOf(HasSubstr("links of"), HasSubstr("MiB"), HasSubstr("--method thesis")));
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+}
+
 TEST_F(Bake, LiveMovesEndWhereAFreshBakeDoes) {
   const std::string moves = "--move cube1=-0.4,0.3,0 --move cube2=0.2,0,0.1 --move cube1=0.1,0,0";
   const auto fresh = bake("fresh.exr", moves), live = bake("live.exr", moves + " --live"),
@@ -121,7 +150,7 @@ TEST_F(Bake, LiveMovesEndWhereAFreshBakeDoes) {
 TEST_F(Bake, AgreesWithTheReference) {
   const auto traced = bake("reference.exr", "--method reference --spp 1024 --png " + path("reference.png") +
                                                 " --report " + path("r.json"));
-  const auto field = bake("field.exr", "--psf 1536 --abuffer list --png " + path("field.png"));
+  const auto field = bake("field.exr", "--psf 1536 --png " + path("field.png"));
   double difference = 0, sum = 0;
   for (std::size_t i = 0; i < traced.size(); ++i) {
     if (i % 4 == 3) {

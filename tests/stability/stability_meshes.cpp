@@ -124,11 +124,9 @@ Case edge_texels() {
                      return share_off(
                          map, [](const Texel&) { return pi; }, 0.01);
                    },
-                   {{{0.01, 0.3}, {0, 0.2}, {0.01}}},
-                   "as the furnace; the list loses no ray at all.",
-                   "a texel on the very line is on neither side of it. As the corners of the wall happen to "
-                   "run, half of these are taken to lie outside, and look past the room. Let no chart's edge "
-                   "run through texels' centres at the size that is baked."}}};
+                   {{{0.01, 0.3}, {0.01}, {0.01}}},
+                   "a hundredth of the texels: those in the very corners are on no side of three walls at once.",
+                   "layers are lost along outlines, as in the other rooms, and here every edge of the room is one."}}};
 }
 
 }  // namespace

@@ -6,7 +6,8 @@
 
 namespace lichtveld::scene {
 
-// A line from which something rises above a triangle's plane, or falls away below it, world space [m].
+// A line from which something rises above a triangle's plane, or falls away below it, world space [m]. Seen
+// from the side of the triangle's NORMAL its middle lies to the left of a -> b.
 struct Wall {
   glm::vec3 a, b;
   bool rises;
