@@ -39,7 +39,10 @@ void main() {
   partial[lane] = mine;
   for (uint width = TILE / 2u; width > 0u; width /= 2u) {
     barrier();
-    if (lane < width) partial[lane] = vec2(max(partial[lane].x, partial[lane + width].x), partial[lane].y + partial[lane + width].y);
+    if (lane < width) {
+      const vec2 other = partial[lane + width];
+      partial[lane] = vec2(max(partial[lane].x, other.x), partial[lane].y + other.y);
+    }
   }
   if (lane == 0u) changes[gl_WorkGroupID.x] = partial[0];
 }

@@ -178,7 +178,8 @@ void add_serve(CLI::App& application) {
     choose_method(*command, options->method);
     if (options->method == Method::links && (command->count("--abuffer") > 0 || command->count("--sort") > 0))
       throw UsageError("--abuffer and --sort mean nothing to --method links; leave them out");
-    options->chosen_quality = command->count("--size") + command->count("--psf") > 0;
+    options->chosen_quality =
+        command->count("--size") + command->count("--psf") + command->count("--psf-size") > 0;
     serve(*options);
   });
 }

@@ -1,10 +1,17 @@
 #include "convergence.hpp"
 
+#include <spdlog/spdlog.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 namespace lichtveld::lightfield {
+
+void warn_of_no_bound(const Solution& solution) {
+  spdlog::warn("still {:.2g} of the mean may be missing after {} bounces: an albedo near 1 bounds nothing",
+               solution.residual, solution.bounces);
+}
 
 Convergence::Convergence(const gpu::Device& device, const LightMap& map)
     : before_(std::size_t{map.size} * map.size, glm::vec4(0)) {

@@ -6,6 +6,14 @@
 
 namespace lichtveld::lightfield {
 
+// Where a bound of `auto` cannot be met (an albedo of 1 bounds nothing), it ends here.
+constexpr std::uint32_t most_bounces = 256;
+// `auto` ends when the bound on what is missing falls below this share of the mean.
+constexpr double converged = 1e-3;
+
+// Says in the log that most_bounces were not enough.
+void warn_of_no_bound(const Solution& solution);
+
 // A bounce multiplies what is missing by at most the largest albedo, because the rows of the transport operator
 // sum to one. After a bounce that changed E by at most r, what all later bounces still add is below r / (1 -
 // max albedo).

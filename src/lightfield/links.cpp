@@ -17,11 +17,6 @@ namespace lichtveld::lightfield {
 
 namespace {
 
-// Where the bound of `auto` cannot be met (an albedo of 1 bounds nothing), it ends here.
-constexpr std::uint32_t most_bounces = 256;
-// `auto` ends when the bound on what is missing falls below this share of the mean.
-constexpr double converged = 1e-3;
-
 // Bounces without progress after which the bound is as low as it gets.
 constexpr std::uint32_t patience = 8;
 
@@ -84,11 +79,7 @@ struct Links::Parts {
         counters(device, "lightfield/counters", sizeof(shaders::Counters),
                  vk::BufferUsageFlagBits::eStorageBuffer, gpu::Memory::host) {
     place(at_rest());
-    {
-      gpu::Frame frame(device, times);
-      geometry_texture.find_sources(frame, map);
-      frame.submit_and_wait();
-    }
+    find_sources();
     brightest_of_scene = brightest(device, map);
     table = std::make_unique<LinkTable>(device, scene, map, pairs());
     gather = std::make_unique<Gather>(device, *table, psfs, radiance_scale(brightest_of_scene));
@@ -116,6 +107,7 @@ struct Links::Parts {
   std::uint32_t pairs() const { return settings.psf / 2; }
   std::vector<glm::vec3> at_rest() const { return std::vector(geometry.scene.bodies.size(), glm::vec3(0)); }
   void place(const std::vector<glm::vec3>& to);
+  void find_sources();
   void link(const std::vector<glm::vec3>& to);
   std::vector<shaders::Region> to_link(const std::vector<glm::vec3>& to, bool all) const;
   void route(const std::vector<shaders::Region>& regions);
@@ -138,9 +130,7 @@ Solution Links::solve(const std::vector<glm::vec3>& offsets) {
   Solution& solution = parts.solution;
   solution.bounces = 0;
   parts.converge([](std::uint32_t) { return false; });
-  if (solution.bounces == most_bounces && !parts.settings.bounces)
-    spdlog::warn("still {:.2g} of the mean may be missing after {} bounces: an albedo near 1 bounds nothing",
-                 solution.residual, solution.bounces);
+  if (solution.bounces == most_bounces && !parts.settings.bounces) warn_of_no_bound(solution);
   solution.error_estimate = split_half_error(parts.device, parts.map);
   parts.present();
   return solution;
@@ -175,6 +165,12 @@ void Links::Parts::place(const std::vector<glm::vec3>& to) {
   gpu::Frame frame(device, times);
   frame.clear("route_links", map.cover, {});
   geometry_texture.record(frame, geometry, map);
+  frame.submit_and_wait();
+}
+
+void Links::Parts::find_sources() {
+  gpu::Frame frame(device, times);
+  geometry_texture.find_sources(frame, map);
   frame.submit_and_wait();
 }
 

@@ -40,6 +40,7 @@ StoreExtent store_extent(const gpu::Device& device, std::uint32_t pixels, std::u
 
 template <typename T>
 void put(const gpu::Device& device, gpu::Buffer& buffer, const std::vector<T>& contents) {
+  if (contents.empty()) return;
   const auto bytes = contents.size() * sizeof(T);
   if (bytes > buffer.size())
     buffer = gpu::Buffer(device, buffer.name(), 2 * bytes, vk::BufferUsageFlagBits::eStorageBuffer,

@@ -19,10 +19,6 @@ namespace {
 
 // PSFs a submission: bounds its queries and how long a GPU is held at a stretch.
 constexpr std::size_t psfs_a_frame = 128;
-// Where a bound of `auto` cannot be met (an albedo of 1 bounds nothing), it ends here.
-constexpr std::uint32_t most_bounces = 256;
-// `auto` ends when the bound on what is missing falls below this share of the mean.
-constexpr double converged = 1e-3;
 
 // The sort networks want a power of two, and every sample of a routed pass is used.
 std::uint32_t capacity_for(std::uint32_t layers, const Settings& settings, const gpu::Device& device) {
@@ -134,8 +130,7 @@ const gpu::PassTimes& Thesis::times() const {
 bool Thesis::Parts::done(const Solution& solution) const {
   if (settings.bounces) return solution.bounces >= *settings.bounces;
   if (solution.bounces < most_bounces) return solution.bounces > 0 && solution.residual < converged;
-  spdlog::warn("still {:.2g} of the mean may be missing after {} bounces: an albedo near 1 bounds nothing",
-               solution.residual, solution.bounces);
+  warn_of_no_bound(solution);
   return true;
 }
 
