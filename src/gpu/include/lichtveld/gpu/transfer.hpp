@@ -1,6 +1,7 @@
 // Whole buffers and images between host and device, each as a frame of its own.
 #pragma once
 
+#include <algorithm>
 #include <cstring>
 
 #include "lichtveld/gpu/frame.hpp"
@@ -13,7 +14,7 @@ Buffer upload(const Device& device, const std::string& name, std::span<const T> 
               vk::BufferUsageFlags usage) {
   const vk::DeviceSize bytes = std::max<vk::DeviceSize>(sizeof(T), contents.size_bytes());
   Buffer staging(device, name + " (staging)", bytes, vk::BufferUsageFlagBits::eTransferSrc, Memory::host);
-  std::memcpy(staging.bytes().data(), contents.data(), contents.size_bytes());
+  std::ranges::copy(std::as_bytes(contents), staging.bytes().begin());
   Buffer buffer(device, name, bytes, usage | vk::BufferUsageFlagBits::eTransferDst);
   PassTimes times;
   Frame frame(device, times);
