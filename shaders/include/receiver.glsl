@@ -11,6 +11,18 @@ const float SUBPIXEL = 1.0 / 256.0;
 const float ROUNDING = 1e-5;
 float receiver_tolerance(vec2 slope, float pixel) { return SUBPIXEL * pixel * (abs(slope.x) + abs(slope.y)) + ROUNDING; }
 
+// Of the 2 x 2 pixels around a texel, the nearest first, how far each is from the nearest; `within`: of the texel, from the
+// nearest's centre [pixels].
+ivec2 beside_nearest(uint attempt, vec2 within) {
+  const bool far_x = attempt == 3u || attempt == (abs(within.x) > abs(within.y) ? 1u : 2u);
+  const bool far_y = attempt == 3u || attempt != 0u && !far_x;
+  return ivec2(far_x ? (within.x < 0.0 ? -1 : 1) : 0, far_y ? (within.y < 0.0 ? -1 : 1) : 0);
+}
+
+// How near a wall the rasteriser may have put a pixel's centre on either side [m]; `scale`: of PSF coordinates to metres
+// along the receiver's plane.
+float wall_margin(float pixel_width, float scale) { return 2.0 * SUBPIXEL * pixel_width / scale; }
+
 // The step from a texel to its neighbour in x or y on the same chart [m]; zero if it has none there.
 vec3 texel_step(ivec2 texel, vec3 p, ivec2 by) {
   const ivec2 after = min(texel + by, imageSize(position) - 1), before = max(texel - by, ivec2(0));

@@ -64,16 +64,12 @@ void route(uint me, Region region) {
   const vec2 slope = vec2(dot(face, right), dot(face, up)) / face_cosine;  // of the depth along `travel`
   const float depth = sign * dot(view.along, p), scale = length(view.along.xyz);
   const float tolerance = receiver_tolerance(slope, pixel_width);
-  const float margin = 2.0 * SUBPIXEL * pixel_width / (face_cosine * scale);
+  const float margin = wall_margin(pixel_width, face_cosine * scale);
   int link = -1;
   bool known = false;
   // As in stencil_routing: of the 2 x 2 pixels the nearest that tells what the texel sees.
   for (uint choice = 0u; choice < 8u; ++choice) {
-    const uint attempt = choice % 4u;
-    const bool far_x = attempt == 3u || attempt == (abs(within.x) > abs(within.y) ? 1u : 2u);
-    const bool far_y = attempt == 3u || attempt != 0u && !far_x;
-    const ivec2 beside = ivec2(far_x ? (within.x < 0.0 ? -1 : 1) : 0, far_y ? (within.y < 0.0 ? -1 : 1) : 0);
-    const ivec2 pixel = clamp(nearest + beside, ivec2(0), ivec2(size) - 1);
+    const ivec2 pixel = clamp(nearest + beside_nearest(choice % 4u, within), ivec2(0), ivec2(size) - 1);
     const vec2 shift = (vec2(pixel) + 0.5) * pixel_width - 1.0 - projected;
     const float own_depth = receiver_depth(shift, depth, slope);
     const vec3 away = (right * shift.x + up * shift.y + travel * (own_depth - depth)) / scale;

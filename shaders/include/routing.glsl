@@ -44,18 +44,14 @@ void main() {
   const float tolerance = receiver_tolerance(slope, pixel_width);
   const uvec4 near = imageLoad(near_walls, texel);
   const uint triangle = uint(face_and_triangle.a);
-  const float margin = 2.0 * SUBPIXEL * pixel_width / (face_cosine * length(view.along.xyz));
+  const float margin = wall_margin(pixel_width, face_cosine * length(view.along.xyz));
   bool known = false, in_contact = false;
   vec3 radiance = vec3(0.0);
   bool missed = true;
   // Of the 2 x 2 pixels around the texel the nearest that tells what the texel sees: its centre meets the texel's own
   // surface, or, if there is none, at least does not lie behind a wall.
   for (uint choice = 0u; choice < 8u; ++choice) {
-    const uint attempt = choice % 4u;
-    const bool far_x = attempt == 3u || attempt == (abs(within.x) > abs(within.y) ? 1u : 2u);
-    const bool far_y = attempt == 3u || attempt != 0u && !far_x;
-    const ivec2 beside = ivec2(far_x ? (within.x < 0.0 ? -1 : 1) : 0, far_y ? (within.y < 0.0 ? -1 : 1) : 0);
-    const ivec2 pixel = clamp(nearest + beside, ivec2(0), ivec2(size) - 1);
+    const ivec2 pixel = clamp(nearest + beside_nearest(choice % 4u, within), ivec2(0), ivec2(size) - 1);
     const vec2 centre = (vec2(pixel) + 0.5) * pixel_width - 1.0;
     const float own_depth = receiver_depth(centre - projected, depth, slope);
     const vec3 away = (right * (centre.x - projected.x) + up * (centre.y - projected.y) +

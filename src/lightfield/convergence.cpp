@@ -13,6 +13,12 @@ void warn_of_no_bound(const Solution& solution) {
                solution.residual, solution.bounces);
 }
 
+double bound_on_missing(double change, float albedo_max, double mean) {
+  if (change == 0) return 0;
+  if (albedo_max >= 1) return std::numeric_limits<double>::infinity();
+  return change / (1 - albedo_max) / mean;
+}
+
 Convergence::Convergence(const gpu::Device& device, const LightMap& map)
     : before_(std::size_t{map.size} * map.size, glm::vec4(0)) {
   const auto positions = gpu::download<glm::vec4>(device, map.position);
@@ -35,9 +41,7 @@ double Convergence::measure(const gpu::Device& device, const LightMap& map) {
     }
   }
   before_ = std::move(now);
-  if (change == 0) return 0;
-  if (albedo_max_ >= 1) return std::numeric_limits<double>::infinity();
-  return change / (1 - albedo_max_) / (sum / (3.0 * texels_valid_));
+  return bound_on_missing(change, albedo_max_, sum / (3.0 * texels_valid_));
 }
 
 double split_half_error(const gpu::Device& device, const LightMap& map) {

@@ -15,8 +15,10 @@ constexpr double converged = 1e-3;
 void warn_of_no_bound(const Solution& solution);
 
 // A bounce multiplies what is missing by at most the largest albedo, because the rows of the transport operator
-// sum to one. After a bounce that changed E by at most r, what all later bounces still add is below r / (1 -
-// max albedo).
+// sum to one. After a bounce that changed E by at most `change`, what all later bounces still add is below
+// change / (1 - max albedo): that bound as a share of E's mean, infinite if an albedo is 1.
+double bound_on_missing(double change, float albedo_max, double mean);
+
 class Convergence {
  public:
   // Reads the largest albedo and the valid texels of a map whose geometry_texture is drawn.
@@ -24,8 +26,7 @@ class Convergence {
 
   std::uint32_t texels_valid() const { return texels_valid_; }
 
-  // After a bounce: that bound as a share of E's mean, over the valid texels and channels. Infinite if an
-  // albedo is 1.
+  // After a bounce: that bound, over the valid texels and channels.
   double measure(const gpu::Device& device, const LightMap& map);
 
  private:

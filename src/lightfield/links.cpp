@@ -265,11 +265,7 @@ void Links::Parts::bounce() {
   frame.submit_and_wait();
   ++solution.bounces;
   const auto change = gather->change(*table);
-  // Convergence's bound, from what the bounce itself has measured.
-  solution.residual = change.most == 0 ? 0
-                      : brightest_of_scene.albedo >= 1
-                          ? std::numeric_limits<double>::infinity()
-                          : change.most / (1 - brightest_of_scene.albedo) / change.mean;
+  solution.residual = bound_on_missing(change.most, brightest_of_scene.albedo, change.mean);
 }
 
 // As many bounces as are asked for; or until the bound is met, or falls no more: with few directions the
