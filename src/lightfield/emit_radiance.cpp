@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstddef>
 
+#include "draw_scene.hpp"
 #include "shaders/emit_radiance.vert.h"
 #include "shaders/emit_radiance_count.comp.h"
 #include "shaders/emit_radiance_list.frag.h"
@@ -18,15 +18,9 @@ namespace {
 constexpr auto layer_format = vk::Format::eR32G32B32A32Sfloat;
 constexpr auto stencil_format = vk::Format::eS8Uint;
 
-gpu::GraphicsState scene_state(const LayerStore& store, bool double_sided) {
-  gpu::GraphicsState state{.vertex_stride = sizeof(scene::Vertex),
-                           .attributes = {{0, vk::Format::eR32G32B32Sfloat, offsetof(scene::Vertex, position)},
-                                          {2, vk::Format::eR32G32Sfloat, offsetof(scene::Vertex, atlas)},
-                                          {4, vk::Format::eR32Uint, offsetof(scene::Vertex, body)}},
-                           // A surface that faces the direction of travel is seen from its front; with up
-                           // pointing down the raster, its counter-clockwise triangles turn clockwise.
-                           .cull = double_sided ? vk::CullModeFlagBits::eNone : vk::CullModeFlagBits::eBack,
-                           .front = vk::FrontFace::eClockwise};
+gpu::GraphicsState emission_state(const LayerStore& store, bool double_sided) {
+  auto state = scene_state();
+  state.cull = double_sided ? vk::CullModeFlagBits::eNone : vk::CullModeFlagBits::eBack;
   if (store.routed) {
     state.colours = {layer_format};
     state.stencil_format = stencil_format;
@@ -137,7 +131,7 @@ EmitRadiance::EmitRadiance(const gpu::Device& device, const LayerStore& store)
     draw_.emplace_back(
         device, name, emit_radiance_vert,
         store.routed ? gpu::Spirv(emit_radiance_stencil_frag) : gpu::Spirv(emit_radiance_list_frag), interface,
-        scene_state(store, double_sided));
+        emission_state(store, double_sided));
 }
 
 void EmitRadiance::record(gpu::Frame& frame, const shaders::PsfView& view, const Geometry& geometry,
@@ -171,7 +165,7 @@ void EmitRadiance::record_stencil(gpu::Frame& frame, const shaders::EmitConstant
                      draw.full_screen_triangle();
                    }
                    draw.stencil_reference(1);
-                   draw_scene(draw, constants, geometry, bindings);
+                   draw_scene(draw, draw_, geometry, bindings, constants);
                  });
   }
   if (constants.count != 0) {
@@ -189,21 +183,7 @@ void EmitRadiance::record_list(gpu::Frame& frame, const shaders::EmitConstants& 
                                 gpu::writes(*store.filled), gpu::writes(*store.layers), gpu::writes(counters)};
   const gpu::Target target{.extent = {store.size, store.size}};
   frame.render("emit_radiance", target, bindings, {&geometry.vertices, &geometry.indices},
-               [&](gpu::Draw& draw) { draw_scene(draw, constants, geometry, bindings); });
-}
-
-void EmitRadiance::draw_scene(gpu::Draw& draw, const shaders::EmitConstants& constants,
-                              const Geometry& geometry, const std::vector<gpu::Binding>& bindings) const {
-  const auto one_sided = geometry.scene.one_sided_indices;
-  const auto all = static_cast<std::uint32_t>(geometry.scene.indices.size());
-  draw.geometry(geometry.vertices, geometry.indices);
-  draw.bind(draw_[0], bindings);
-  draw.push(constants);
-  draw.indexed(0, one_sided);
-  if (one_sided == all) return;
-  draw.bind(draw_[1], bindings);
-  draw.push(constants);
-  draw.indexed(one_sided, all - one_sided);
+               [&](gpu::Draw& draw) { draw_scene(draw, draw_, geometry, bindings, constants); });
 }
 
 }  // namespace lichtveld::lightfield

@@ -51,8 +51,6 @@ class EmitRadiance {
                       const LightMap& map, const LayerStore& store, const gpu::Buffer& counters) const;
   void record_list(gpu::Frame& frame, const shaders::EmitConstants& constants, const Geometry& geometry,
                    const LightMap& map, const LayerStore& store, const gpu::Buffer& counters) const;
-  void draw_scene(gpu::Draw& draw, const shaders::EmitConstants& constants, const Geometry& geometry,
-                  const std::vector<gpu::Binding>& bindings) const;
 
   vk::raii::Sampler bilinear_;
   std::vector<gpu::GraphicsPipeline> set_stencil_;  // one a sample

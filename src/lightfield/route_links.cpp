@@ -1,9 +1,9 @@
 #include "route_links.hpp"
 
 #include <algorithm>
-#include <cstddef>
 #include <cstring>
 
+#include "draw_scene.hpp"
 #include "shaders/emit_links.frag.h"
 #include "shaders/emit_links.vert.h"
 #include "shaders/link_cover.comp.h"
@@ -96,12 +96,7 @@ RouteLinks::RouteLinks(const gpu::Device& device, const LinkStore& store, const 
                                  Kind::storage_buffer, Kind::storage_buffer, Kind::storage_buffer},
                        .push_bytes = sizeof(shaders::EmitLinksConstants),
                        .specialisation = {double_sided}},
-        // As emit_radiance: what faces the direction of travel is seen from its front.
-        gpu::GraphicsState{.vertex_stride = sizeof(scene::Vertex),
-                           .attributes = {{0, vk::Format::eR32G32B32Sfloat, offsetof(scene::Vertex, position)},
-                                          {2, vk::Format::eR32G32Sfloat, offsetof(scene::Vertex, atlas)},
-                                          {4, vk::Format::eR32Uint, offsetof(scene::Vertex, body)}},
-                           .front = vk::FrontFace::eClockwise});
+        scene_state());
 }
 
 void RouteLinks::read_receivers(gpu::Frame& frame, const LightMap& map, const LinkTable& table) const {
@@ -141,20 +136,10 @@ void RouteLinks::record(gpu::Frame& frame, const RegionBatch& batch, const Geome
                                          .store_height = store.extent.height,
                                          .capacity = store.capacity,
                                          .limit = limit};
-  const auto one_sided = geometry.scene.one_sided_indices;
-  const auto all = static_cast<std::uint32_t>(geometry.scene.indices.size());
   const auto instances = static_cast<std::uint32_t>(batch.regions.size());
   frame.render("emit_links", {.extent = {store.extent.width, store.extent.height}}, bindings,
-               {&geometry.vertices, &geometry.indices}, [&](gpu::Draw& draw) {
-                 draw.geometry(geometry.vertices, geometry.indices);
-                 draw.bind(draw_[0], bindings);
-                 draw.push(emit);
-                 draw.indexed(0, one_sided, instances);
-                 if (one_sided == all) return;
-                 draw.bind(draw_[1], bindings);
-                 draw.push(emit);
-                 draw.indexed(one_sided, all - one_sided, instances);
-               });
+               {&geometry.vertices, &geometry.indices},
+               [&](gpu::Draw& draw) { draw_scene(draw, draw_, geometry, bindings, emit, instances); });
   // Jobs stand in the order of their pairs, and so of the table's chunks.
   auto first = batch.jobs.begin();
   for (const auto& chunk : table.chunks) {
