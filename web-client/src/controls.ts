@@ -63,7 +63,7 @@ export class Controls {
 
   /** Flies on while keys are held; `ms` since the last call. */
   advance(ms: number): void {
-    const distance = (flightSpeed * this.room.height * Math.min(ms, 100)) / 1000;
+    const distance = (flightSpeed * this.room.height * ms) / 1000;
     for (const code of this.#held) {
       const [right, up, ahead] = flightKeys[code] ?? [0, 0, 0];
       this.#flight.move(right * distance, up * distance, ahead * distance);
@@ -83,6 +83,7 @@ export class Controls {
     ) {
       event.preventDefault();
       this.#held.add(event.code);
+      this.room.invalidate();
       this.events.onUse();
     }
   }

@@ -1,4 +1,4 @@
-import { LinearFilter, SRGBColorSpace, Texture } from 'three';
+import { LinearFilter, NoColorSpace, Texture } from 'three';
 
 /** The newest map as a texture; one picture is held at a time. */
 export class LightMap {
@@ -8,8 +8,9 @@ export class LightMap {
     this.texture.channel = 1; // glTF's TEXCOORD_1
     this.texture.minFilter = this.texture.magFilter = LinearFilter;
     this.texture.generateMipmaps = false;
-    // The PNG is sRGB: decoded for filtering, encoded again on the way to the screen, so that values come out as sent.
-    this.texture.colorSpace = SRGBColorSpace;
+    // The PNG is sRGB, and so is the screen: values come out as sent. To decode and encode them again only for filtering
+    // between texels would double what a pixel costs where the processor draws.
+    this.texture.colorSpace = NoColorSpace;
   }
 
   get picture(): ImageBitmap | undefined {

@@ -9,6 +9,9 @@ import type { Role, SceneOffer } from './signaling';
 import { MapStatistics } from './statistics';
 import { View } from './view';
 
+/** Milliseconds that a frame counts for at most: of a pause before it nothing is made up for. */
+const longestFrameMs = 20;
+
 const view = new View();
 const statistics = new MapStatistics();
 
@@ -104,15 +107,23 @@ function start(room: Room): void {
   addEventListener('pageshow', ({ persisted }) => persisted && session.comeBack());
   setInterval(() => view.showFacts(statistics), 250);
 
-  let last = performance.now();
+  // Frames are asked for only while there is something new to draw.
+  let last = 0;
+  let asked = false;
   const frame = (now: number): void => {
-    const ms = now - last;
+    asked = false;
+    const ms = Math.max(0, now - last);
     last = now;
     controls.advance(ms);
     if (room.draw(ms)) view.placeLabel(room.ownLabelPlace());
+  };
+  room.onInvalid = () => {
+    if (asked) return;
+    asked = true;
+    last = Math.max(last, performance.now() - longestFrameMs);
     requestAnimationFrame(frame);
   };
-  requestAnimationFrame(frame);
+  room.invalidate();
   exposeForDebugging(known, statistics, room);
 }
 

@@ -1,7 +1,9 @@
 import {
   Box3,
   Color,
+  ColorManagement,
   DoubleSide,
+  LinearSRGBColorSpace,
   MeshBasicMaterial,
   PerspectiveCamera,
   Scene,
@@ -14,6 +16,9 @@ import { outline } from './outline';
 import type { Place } from './protocol';
 import type { SceneFile } from './scene_file';
 
+// Colours go to the screen as they are given, which is sRGB: see LightMap.
+ColorManagement.enabled = false;
+
 /** Own cubes' colours in the order of the cubes; the words are used in the hints. */
 export const cubeColours = [
   { name: 'orange', css: '#ffb020' },
@@ -22,6 +27,20 @@ export const cubeColours = [
 
 /** Milliseconds in which a cube covers 63 % of the way to its new place: a step is seen as motion, not as a jump. */
 const glideMs = 45;
+
+/**
+ * Whether WebGL is drawn by the processor. A picture then costs milliseconds for every 100,000 pixels, and the machine
+ * may be the one that computes the light: so edges are not smoothed, and a cube jumps with the map that shows it instead
+ * of being drawn on its way there. `failIfMajorPerformanceCaveat` would tell, but Chromium's headless mode denies it.
+ */
+function drawsInSoftware(): boolean {
+  const probe = document.createElement('canvas').getContext('webgl2');
+  if (!probe) return false;
+  const names = probe.getExtension('WEBGL_debug_renderer_info');
+  const name = String(probe.getParameter(names ? names.UNMASKED_RENDERER_WEBGL : probe.RENDERER));
+  probe.getExtension('WEBGL_lose_context')?.loseContext();
+  return /swiftshader|llvmpipe|softpipe|basic render/i.test(name);
+}
 
 /** What is on the screen: the scene under its light map, drawn only when something has changed. */
 export class Room {
@@ -42,13 +61,19 @@ export class Room {
   #outline: ReturnType<typeof outline> | undefined;
   #dirty = true;
   #settle = true;
+  readonly #glides: boolean;
+  /** Called whenever there is something new to draw. */
+  onInvalid = (): void => {};
 
   /** Throws where WebGL 2 is missing. */
   constructor(canvas: HTMLCanvasElement) {
-    this.#renderer = new WebGLRenderer({ canvas, antialias: true, powerPreference: 'high-performance' });
-    this.#renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+    const software = drawsInSoftware();
+    this.#glides = !software;
+    this.#renderer = new WebGLRenderer({ canvas, antialias: !software, powerPreference: 'high-performance' });
+    this.#renderer.setPixelRatio(software ? 1 : Math.min(devicePixelRatio, 2));
+    this.#renderer.outputColorSpace = LinearSRGBColorSpace;
     this.#scene.background = new Color(0x0b0d10);
-    canvas.addEventListener('webglcontextrestored', () => (this.#dirty = true));
+    canvas.addEventListener('webglcontextrestored', () => this.invalidate());
   }
 
   show(file: SceneFile): void {
@@ -83,13 +108,13 @@ export class Room {
       surface.map = this.lightMap.texture;
       surface.needsUpdate = true;
     }
-    this.#dirty = true;
+    this.invalidate();
   }
 
   /** Where the cubes are, in the file's order. */
   setPlaces(places: readonly Place[]): void {
     this.#targets = [...places];
-    this.#dirty = true;
+    this.invalidate();
   }
 
   /** After a pause places are taken at once instead of in a glide across the room. */
@@ -135,19 +160,21 @@ export class Room {
     else this.camera.clearViewOffset();
     this.camera.updateProjectionMatrix();
     this.#outline?.resize(width, height);
-    this.#dirty = true;
+    this.invalidate();
   }
 
   invalidate(): void {
     this.#dirty = true;
+    this.onInvalid();
   }
 
   /** Draws if there is something new; `ms` since the last call. True when it has drawn. */
   draw(ms: number): boolean {
     if (!this.#dirty) return false;
-    this.#dirty = this.#moveCubes(this.#settle ? 1 : 1 - Math.exp(-ms / glideMs));
+    this.#dirty = this.#moveCubes(this.#settle || !this.#glides ? 1 : 1 - Math.exp(-ms / glideMs));
     if (this.#targets.length > 0) this.#settle = false;
     this.#renderer.render(this.#scene, this.camera);
+    if (this.#dirty) this.onInvalid();
     return true;
   }
 
