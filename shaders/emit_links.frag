@@ -10,15 +10,14 @@ layout(location = 0) in vec2 atlas_coordinate;
 layout(location = 1) in float psf_depth;
 layout(push_constant) uniform Push { EmitLinksConstants constants; };
 layout(binding = 2, r32ui) uniform readonly uimage2D number;  // of each atlas texel's source among the valid ones
-layout(binding = 3) buffer Filled { uint filled[]; };         // layers of each pixel so far
+layout(binding = 3) buffer Filled { uint filled[]; };         // layers of each pixel so far: layer_link.glsl
 layout(binding = 4) writeonly buffer Layers { uvec2 layers[]; };
-layout(binding = 5) buffer Counted { Counters counters; };
 
-void add(uint pixel, uvec2 layer) {
-  const uint place = atomicAdd(filled[pixel], 1u);
-  if (place < constants.capacity) layers[pixel * constants.capacity + place] = layer;
-  if (place == constants.limit) atomicAdd(counters.overflow_pixels, 1u);
-  if (place >= counters.layers_max) atomicMax(counters.layers_max, place + 1u);  // a stale read only costs an atomic
+void add(uint pixel, uint texel, bool along, float depth) {
+  const uint nth = layers_of(atomicAdd(filled[pixel], along ? SENDS_ALONG : SENDS_BACK), along);
+  if (nth < constants.capacity)
+    layers[place_of(nth, along, constants.capacity) * constants.store_width * constants.store_height + pixel] =
+        layer_link(texel, depth);
 }
 
 void main() {
@@ -27,7 +26,7 @@ void main() {
   const uint pixel = uint(gl_FragCoord.y) * constants.store_width + uint(gl_FragCoord.x);
   const float behind = back_shift(psf_depth);
   const bool along = gl_FrontFacing;  // its front sends along the direction
-  add(pixel, layer_link(texel, along, psf_depth));
+  add(pixel, texel, along, psf_depth);
   // Seen from behind it also sends the other way, from just behind its own texels.
-  if (DOUBLE_SIDED != 0u) add(pixel, layer_link(texel, !along, psf_depth + (along ? -behind : behind)));
+  if (DOUBLE_SIDED != 0u) add(pixel, texel, !along, psf_depth + (along ? -behind : behind));
 }

@@ -11,6 +11,7 @@ layout(binding = 1) readonly buffer Directions { vec4 directions[]; };  // xyz; 
 layout(binding = 2) readonly buffer Receivers { Receiver receivers[]; };
 layout(binding = 3) readonly buffer Positions { vec4 positions[]; };  // xyz [m]; w: the atlas texel
 layout(binding = 4, r32f) uniform writeonly image2D cover;            // as LightMap::cover
+layout(binding = 5) readonly buffer Groups { uint groups[]; };        // of texels, to look at
 layout(push_constant) uniform Push { CoverConstants constants; };
 
 // Flatter than 60 degrees off the normal a texel meets a block's side as near as its bottom.
@@ -24,7 +25,7 @@ uint link_of(uint pair, uint me) {
 }
 
 void main() {
-  const uint me = gl_GlobalInvocationID.x;
+  const uint me = groups[gl_WorkGroupID.x] * TILE + gl_LocalInvocationID.x;
   if (me >= constants.texels) return;
   const vec3 face = receivers[me].face_and_triangle.xyz;
   const vec4 place = positions[me];

@@ -1,7 +1,6 @@
 // Links of 32 bits.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-
 #include "shared.h"
 #include "links.glsl"
 

@@ -1,15 +1,7 @@
 // A texel as a receiver of one PSF's light: its plane in PSF coordinates, what stands on it, how far its chart reaches.
 // Included by a shader that has the image `position` (xyz [m]; a: 1 on valid texels), `walls_first` and `walls`.
 
-// Layers are sampled at pixel centres, so the receiver's depth is taken there too: where the ray through the centre
-// meets the receiver's plane. Shifts in PSF coordinates; `slope` is the plane's change of depth along right and up.
-float receiver_depth(vec2 shift, float depth, vec2 slope) { return depth + dot(shift, slope); }
-
-// What the rasteriser may be off by: vertices are snapped to 1/256 pixel (Vulkan's usual subPixelPrecisionBits), which
-// moves a plane's depth by as much of its slope; and rounding of 32-bit depths.
-const float SUBPIXEL = 1.0 / 256.0;
-const float ROUNDING = 1e-5;
-float receiver_tolerance(vec2 slope, float pixel) { return SUBPIXEL * pixel * (abs(slope.x) + abs(slope.y)) + ROUNDING; }
+#include "receiver_plane.glsl"
 
 // Of the 2 x 2 pixels around a texel, the nearest first, how far each is from the nearest; `within`: of the texel, from the
 // nearest's centre [pixels].
@@ -18,10 +10,6 @@ ivec2 beside_nearest(uint attempt, vec2 within) {
   const bool far_y = attempt == 3u || attempt != 0u && !far_x;
   return ivec2(far_x ? (within.x < 0.0 ? -1 : 1) : 0, far_y ? (within.y < 0.0 ? -1 : 1) : 0);
 }
-
-// How near a wall the rasteriser may have put a pixel's centre on either side [m]; `scale`: of PSF coordinates to metres
-// along the receiver's plane.
-float wall_margin(float pixel_width, float scale) { return 2.0 * SUBPIXEL * pixel_width / scale; }
 
 // The step from a texel to its neighbour in x or y on the same chart [m]; zero if it has none there.
 vec3 texel_step(ivec2 texel, vec3 p, ivec2 by) {
@@ -48,30 +36,7 @@ bool chart_reaches(ivec2 texel, vec3 p, vec3 away) {
   return true;
 }
 
-// Of the margin: rounding of places in 32 bits.
-const float ON_A_WALL = 0.1;
-
-// Whether wall `wall` stands between p and the place `away` from it. Within `margin` of a wall [m] the rasteriser may have
-// put a centre on either side.
-bool is_between(uint wall, vec3 p, vec3 away, vec3 face, float margin, bool rising_only) {
-  const vec4 first = walls[2u * wall];
-  if (rising_only && first.w == 0.0) return false;
-  const vec3 a = first.xyz, edge = walls[2u * wall + 1u].xyz - a;
-  const float width = length(edge);
-  if (width == 0.0) return false;
-  const vec3 along = edge / width, across = cross(face, along);
-  float here = dot(p - a, across), there = here + dot(away, across);
-  // A texel on the line itself belongs to its triangle's middle, which is where `across` points.
-  if (here < -ON_A_WALL * margin) {
-    here = -here;
-    there = -there;
-  }
-  here = max(here, 0.0);
-  if (there > min(margin, 0.5 * here)) return false;
-  const float share = there < here ? clamp(here / max(here - there, 1e-30), 0.0, 1.0) : 1.0;
-  const float place = dot(p + share * away - a, along);
-  return place >= -margin && place <= width + margin;
-}
+#include "wall.glsl"
 
 // Whether a surface leaves the receiver's plane between p and the place `away` from it: one that rises from it, or any.
 // `near`: the receiver's two nearest walls, and the distances of the first and of the third, as bits [m].

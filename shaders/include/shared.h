@@ -108,15 +108,20 @@ struct RouteJob {
 struct EmitLinksConstants {
   uint size;                       // of a pair's raster [pixels]
   uint store_width, store_height;  // [pixels]
-  uint capacity, limit;            // layers that a pixel has room for; asked for: pixels with more are counted
+  uint capacity;                   // layers that a pixel has room for
+};
+
+struct CountLayersConstants {
+  uint pixels;  // of the store that are in use
+  uint limit;   // layers asked for: pixels with more are counted
 };
 
 struct RouteLinksConstants {
   uint size;         // of a pair's raster [pixels]
-  uint store_width;  // [pixels]
-  uint texels;       // links that a pair has
-  uint first_pair;   // of the table's chunk
-  uint first_job;    // of this dispatch
+  uint store_width, store_pixels;
+  uint texels;             // links that a pair has
+  uint first_pair, pairs;  // of the table's chunk
+  uint first_job;          // of this dispatch
 };
 
 struct GatherConstants {
@@ -144,6 +149,7 @@ struct Counters {
   uint rays, misses;                 // of texels that face the light; those that hit nothing
   uint unknown;                      // rays without a pixel on the texel's side of all walls: left out
   uint overflow_pixels, layers_max;  // PSF pixels with more layers than asked for; most layers in one
+  uint doubts, rest;                 // rays that route_links leaves to route_doubts, and that to route_rest
 };
 
 #ifdef __cplusplus

@@ -2,14 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace lichtveld::lightfield {
 
 namespace {
 
-// Around a projection [pixels]: a texel looks at centres up to one pixel away, on either side of what changed,
-// and the nearest of them may be rounded.
-constexpr float margin = 3;
+// A texel looks at the centres of the 2 x 2 pixels around it, less than a pixel away in either direction. More
+// than that by what a rasteriser snaps its corners to, and by rounding [pixels].
+constexpr float reach = 1.02f;
 
 // A workgroup's: to start one costs a CPU device as much as to route some texels, and a GPU wants thousands of
 // them.
@@ -20,46 +21,83 @@ glm::vec2 in_pixels(const shaders::PsfView& view, const glm::vec3& point, float 
   return (glm::vec2(glm::dot(view.right, p), glm::dot(view.up, p)) * 0.5f + 0.5f) * pixels;
 }
 
-bool looks_into(const TileBounds& tile, const shaders::Region& region, float pixels) {
-  const glm::vec2 centre = in_pixels(region.view, tile.centre, pixels);
-  const float reach = tile.radius * glm::length(glm::vec3(region.view.right)) * pixels / 2 + 2;
-  const glm::vec2 low(region.rect.x, region.rect.y),
-      high(region.rect.x + region.rect.z, region.rect.y + region.rect.w);
-  return glm::all(glm::greaterThan(centre + reach, low)) && glm::all(glm::lessThan(centre - reach, high));
+glm::vec3 corner_of(const scene::Box& box, int corner) {
+  return {corner & 1 ? box.max.x : box.min.x, corner & 2 ? box.max.y : box.min.y,
+          corner & 4 ? box.max.z : box.min.z};
+}
+
+// A box in all places of its way projects to a polygon whose sides run along its edges and its way: it is the
+// intersection of as many slabs. One for an edge that is seen as a point bounds nothing and is left out.
+std::vector<Slab> slabs_around(const shaders::PsfView& view, float pixels, const scene::Box& box,
+                               const glm::vec3& way) {
+  const glm::vec3 right = glm::vec3(view.right) * pixels / 2.0f, up = glm::vec3(view.up) * pixels / 2.0f;
+  const glm::vec3 extent = box.max - box.min;
+  std::vector<Slab> slabs;
+  for (const glm::vec3& side :
+       {glm::vec3(extent.x, 0, 0), glm::vec3(0, extent.y, 0), glm::vec3(0, 0, extent.z), way}) {
+    const glm::vec2 across(-glm::dot(up, side), glm::dot(right, side));
+    const float length = glm::length(across);
+    if (length < 1e-3f) continue;
+    const glm::vec2 unit = across / length;
+    Slab slab{.normal = unit.x * right + unit.y * up,
+              .low = std::numeric_limits<float>::max(),
+              .high = std::numeric_limits<float>::lowest()};
+    for (int corner = 0; corner < 8; ++corner)
+      for (const float share : {0.0f, 1.0f}) {
+        const float at = glm::dot(slab.normal, corner_of(box, corner) + share * way);
+        slab.low = std::min(slab.low, at);
+        slab.high = std::max(slab.high, at);
+      }
+    const float beside = reach * (std::abs(unit.x) + std::abs(unit.y));
+    slab.low -= beside;
+    slab.high += beside;
+    slabs.push_back(slab);
+  }
+  return slabs;
+}
+
+bool meet(const std::vector<Slab>& slabs, const TileBoxes::Tile& tile) {
+  return std::all_of(slabs.begin(), slabs.end(), [&](const Slab& slab) {
+    const float at = glm::dot(slab.normal, tile.centre), half = glm::dot(glm::abs(slab.normal), tile.half);
+    return at + half >= slab.low && at - half <= slab.high;
+  });
 }
 
 }  // namespace
 
-shaders::Region whole(const shaders::PsfView& view, std::uint32_t pair, std::uint32_t pixels) {
+Part whole(const shaders::PsfView& view, std::uint32_t pair, std::uint32_t pixels) {
   const auto side = static_cast<int>(pixels);
-  return {.view = view, .rect = {0, 0, side, side}, .place = {0, 0, static_cast<int>(pair), 0}};
+  return {{.view = view, .rect = {0, 0, side, side}, .place = {0, 0, static_cast<int>(pair), 0}}, {}};
 }
 
-shaders::Region changed(const shaders::PsfView& view, std::uint32_t pair, std::uint32_t pixels,
-                        const scene::Box& before, const scene::Box& after) {
-  glm::vec2 low(static_cast<float>(pixels)), high(0);
-  for (const auto* box : {&before, &after})
-    for (int corner = 0; corner < 8; ++corner) {
-      const glm::vec3 point(corner & 1 ? box->max.x : box->min.x, corner & 2 ? box->max.y : box->min.y,
-                            corner & 4 ? box->max.z : box->min.z);
-      const auto at = in_pixels(view, point, static_cast<float>(pixels));
+Part changed(const shaders::PsfView& view, std::uint32_t pair, std::uint32_t pixels, const scene::Box& before,
+             const glm::vec3& way) {
+  const auto side = static_cast<float>(pixels);
+  glm::vec2 low(side), high(0);
+  for (int corner = 0; corner < 8; ++corner)
+    for (const float share : {0.0f, 1.0f}) {
+      const auto at = in_pixels(view, corner_of(before, corner) + share * way, side);
       low = glm::min(low, at);
       high = glm::max(high, at);
     }
-  const glm::ivec2 first = glm::clamp(glm::ivec2(glm::floor(low - margin)), glm::ivec2(0), glm::ivec2(pixels));
-  const glm::ivec2 end = glm::clamp(glm::ivec2(glm::ceil(high + margin)), first, glm::ivec2(pixels));
-  return {.view = view, .rect = {first, end - first}, .place = {0, 0, static_cast<int>(pair), 0}};
+  // Of a texel that is as far off, the pixels whose centres lie around it.
+  const auto inside = [&](const glm::vec2& at) {
+    return glm::clamp(glm::ivec2(glm::floor(at)), glm::ivec2(0), glm::ivec2(pixels));
+  };
+  const glm::ivec2 first = inside(low - reach - 1.5f), end = glm::max(first, inside(high + reach + 0.5f) + 1);
+  const auto last = glm::min(end, glm::ivec2(pixels));
+  return {{.view = view, .rect = {first, last - first}, .place = {0, 0, static_cast<int>(pair), 0}},
+          slabs_around(view, side, before, way)};
 }
 
-std::vector<RegionBatch> pack(std::vector<shaders::Region> regions, const StoreExtent& store,
-                              std::uint32_t pixels, const std::vector<TileBounds>& coarse,
-                              const std::vector<TileBounds>& tiles) {
-  const std::size_t each = coarse.empty() ? 1 : (tiles.size() + coarse.size() - 1) / coarse.size();
+std::vector<RegionBatch> pack(const std::vector<Part>& parts, const StoreExtent& store,
+                              const TileBoxes& tiles) {
   std::vector<RegionBatch> batches;
   const auto width = static_cast<int>(store.width), height = static_cast<int>(store.height);
   glm::ivec2 corner(0);  // of the next region: regions stand in rows, as long as they fit
   int row_height = 0;
-  for (auto& region : regions) {
+  for (const auto& [part, slabs] : parts) {
+    auto region = part;
     const glm::ivec2 extent(region.rect.z, region.rect.w);
     if (extent.x == 0 || extent.y == 0) continue;
     if (corner.x + extent.x > width) {
@@ -76,14 +114,14 @@ std::vector<RegionBatch> pack(std::vector<shaders::Region> regions, const StoreE
     corner.x += extent.x;
     row_height = std::max(row_height, extent.y);
     auto& batch = batches.back();
+    batch.rows = static_cast<std::uint32_t>(corner.y + row_height);
     const auto index = static_cast<std::uint32_t>(batch.regions.size());
     batch.regions.push_back(region);
     const auto first = static_cast<std::uint32_t>(batch.tiles.size());
-    const auto side = static_cast<float>(pixels);
-    for (std::size_t group = 0; group < coarse.size(); ++group) {
-      if (!looks_into(coarse[group], region, side)) continue;
-      for (std::size_t tile = group * each; tile < std::min((group + 1) * each, tiles.size()); ++tile)
-        if (looks_into(tiles[tile], region, side)) batch.tiles.push_back(static_cast<std::uint32_t>(tile));
+    for (const auto& group : tiles.groups) {
+      if (!meet(slabs, group.around)) continue;
+      for (std::uint32_t tile = group.first; tile < group.end; ++tile)
+        if (meet(slabs, tiles.tiles[tile])) batch.tiles.push_back(tile);
     }
     const auto end = static_cast<std::uint32_t>(batch.tiles.size());
     for (auto begin = first; begin < end; begin += tiles_a_job)

@@ -14,25 +14,36 @@ struct StoreExtent {
   std::uint32_t width, height;
 };
 
+// The places p [m] with low <= dot(normal, p) <= high.
+struct Slab {
+  glm::vec3 normal{0};
+  float low = 0, high = 0;
+};
+
+// A part of a pair's raster and, as all of these slabs, where a texel is that looks at what may have changed
+// there. None: everywhere.
+struct Part {
+  shaders::Region region;
+  std::vector<Slab> slabs;
+};
+
+// The whole raster of a pair's view.
+Part whole(const shaders::PsfView& view, std::uint32_t pair, std::uint32_t pixels);
+
+// What a box changes by moving from one place to another: the projection of all places between, and what a
+// texel beside it looks at. Empty (no columns) where that lies outside the raster.
+Part changed(const shaders::PsfView& view, std::uint32_t pair, std::uint32_t pixels, const scene::Box& before,
+             const glm::vec3& way);
+
 // As much as is emitted and routed at once.
 struct RegionBatch {
   std::vector<shaders::Region> regions;
+  std::uint32_t rows = 0;               // of the store, from its first on, that they lie in
   std::vector<std::uint32_t> tiles;     // that look into the regions, region by region
   std::vector<shaders::RouteJob> jobs;  // in the order of the regions' pairs
 };
 
-// The whole raster of a pair's view.
-shaders::Region whole(const shaders::PsfView& view, std::uint32_t pair, std::uint32_t pixels);
-
-// The part of it that a box in either of two places can change: its projections and what a texel beside them
-// looks at. Empty (no columns) where the boxes lie outside the raster.
-shaders::Region changed(const shaders::PsfView& view, std::uint32_t pair, std::uint32_t pixels,
-                        const scene::Box& before, const scene::Box& after);
-
-// Regions of at most the store's extent each; those of a batch keep the order of their pairs. `tiles` are asked
-// only where the `coarse` bounds of several of them look into a region.
-std::vector<RegionBatch> pack(std::vector<shaders::Region> regions, const StoreExtent& store,
-                              std::uint32_t pixels, const std::vector<TileBounds>& coarse,
-                              const std::vector<TileBounds>& tiles);
+// Regions of at most the store's extent each; those of a batch keep the order of their pairs.
+std::vector<RegionBatch> pack(const std::vector<Part>& parts, const StoreExtent& store, const TileBoxes& tiles);
 
 }  // namespace lichtveld::lightfield

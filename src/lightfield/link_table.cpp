@@ -50,6 +50,16 @@ gpu::Image numbers(const gpu::Device& device, const LightMap& map, const std::ve
   return image;
 }
 
+struct Bounds {
+  glm::vec3 low{std::numeric_limits<float>::max()}, high{std::numeric_limits<float>::lowest()};
+
+  void add(const glm::vec3& place) {
+    low = glm::min(low, place);
+    high = glm::max(high, place);
+  }
+  TileBoxes::Tile tile() const { return {(low + high) / 2.0f, (high - low) / 2.0f}; }
+};
+
 }  // namespace
 
 LinkTable::LinkTable(const gpu::Device& device, const scene::Scene& scene, const LightMap& map,
@@ -89,18 +99,23 @@ LinkTable::LinkTable(const gpu::Device& device, const scene::Scene& scene, const
   }
 }
 
-std::vector<TileBounds> LinkTable::bounds(const std::vector<glm::vec3>& offsets,
-                                          std::uint32_t texels_each) const {
-  std::vector<TileBounds> found;
-  for (std::uint32_t first = 0; first < texels; first += texels_each) {
-    const auto end = std::min(first + texels_each, texels);
-    glm::vec3 low(std::numeric_limits<float>::max()), high(std::numeric_limits<float>::lowest());
+TileBoxes LinkTable::boxes(const std::vector<glm::vec3>& offsets) const {
+  TileBoxes found;
+  for (std::uint32_t first = 0; first < texels; first += tile) {
+    Bounds bounds;
+    for (std::uint32_t index = first; index < std::min(first + tile, texels); ++index)
+      bounds.add(places_[index].at_rest + offsets[places_[index].body]);
+    found.tiles.push_back(bounds.tile());
+  }
+  const auto count = static_cast<std::uint32_t>(found.tiles.size()), each = shaders::TILE / tile;
+  for (std::uint32_t first = 0; first < count; first += each) {
+    const auto end = std::min(first + each, count);
+    Bounds bounds;
     for (std::uint32_t index = first; index < end; ++index) {
-      const glm::vec3 place = places_[index].at_rest + offsets[places_[index].body];
-      low = glm::min(low, place);
-      high = glm::max(high, place);
+      bounds.add(found.tiles[index].centre - found.tiles[index].half);
+      bounds.add(found.tiles[index].centre + found.tiles[index].half);
     }
-    found.push_back({(low + high) / 2.0f, glm::distance(low, high) / 2});
+    found.groups.push_back({bounds.tile(), first, end});
   }
   return found;
 }

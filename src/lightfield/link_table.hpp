@@ -11,10 +11,17 @@
 
 namespace lichtveld::lightfield {
 
-// The texels of consecutive numbers lie in this sphere, bodies at their places [m].
-struct TileBounds {
-  glm::vec3 centre;
-  float radius;
+// Where the tiles are: boxes around the texels of consecutive numbers, bodies at their places [m].
+struct TileBoxes {
+  struct Tile {
+    glm::vec3 centre, half;  // half: of its extent
+  };
+  struct Group {
+    Tile around;
+    std::uint32_t first, end;  // of its tiles
+  };
+  std::vector<Tile> tiles;
+  std::vector<Group> groups;  // of tiles that lie together
 };
 
 struct LinkTable {
@@ -36,7 +43,7 @@ struct LinkTable {
 
   std::uint32_t groups() const { return (texels + shaders::TILE - 1) / shaders::TILE; }  // workgroups over all
   std::uint32_t tile = 64;  // texels that are routed together: a vector of the device's
-  std::vector<TileBounds> bounds(const std::vector<glm::vec3>& offsets, std::uint32_t texels_each) const;
+  TileBoxes boxes(const std::vector<glm::vec3>& offsets) const;
 
  private:
   struct Texel {

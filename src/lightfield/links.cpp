@@ -109,8 +109,11 @@ struct Links::Parts {
   void place(const std::vector<glm::vec3>& to);
   void find_sources();
   void link(const std::vector<glm::vec3>& to);
-  std::vector<shaders::Region> to_link(const std::vector<glm::vec3>& to, bool all) const;
-  void route(const std::vector<shaders::Region>& regions);
+  std::vector<Part> to_link(const std::vector<glm::vec3>& to, bool all) const;
+  void route(const std::vector<Part>& parts, const TileBoxes& tiles);
+  std::vector<std::uint32_t> in_contact(const std::vector<glm::vec3>& to, bool all,
+                                        const TileBoxes& tiles) const;
+  void find_cover(const std::vector<std::uint32_t>& groups);
   void start();
   void bounce();
   void converge(const std::function<bool(std::uint32_t)>& enough);
@@ -163,7 +166,7 @@ const gpu::PassTimes& Links::times() const {
 void Links::Parts::place(const std::vector<glm::vec3>& to) {
   geometry.place(to, settings.raster());
   gpu::Frame frame(device, times);
-  frame.clear("route_links", map.cover, {});
+  if (offsets.empty()) frame.clear("route_links", map.cover, {});
   geometry_texture.record(frame, geometry, map);
   frame.submit_and_wait();
 }
@@ -187,39 +190,62 @@ void Links::Parts::link(const std::vector<glm::vec3>& to) {
     solution.misses = solution.rays_unknown = solution.overflow_pixels = 0;
     solution.texels_valid = table->texels;
   }
-  const auto regions = to_link(to, all);
+  const auto parts = to_link(to, all);
+  const auto tiles = table->boxes(to);
+  const auto groups = in_contact(to, all, tiles);
   offsets.clear();  // should this fail half-way, nothing is known
-  route(regions);
+  route(parts, tiles);
+  find_cover(groups);
   offsets = to;
 }
 
-std::vector<shaders::Region> Links::Parts::to_link(const std::vector<glm::vec3>& to, bool all) const {
+std::vector<Part> Links::Parts::to_link(const std::vector<glm::vec3>& to, bool all) const {
   const auto pixels = settings.raster();
-  std::vector<shaders::Region> regions;
+  std::vector<Part> parts;
   for (std::uint32_t pair = 0; pair < pairs(); ++pair) {
     const auto view = psf_view(psfs[pair], geometry.sphere, pixels);
     if (all)
-      regions.push_back(whole(view, pair, pixels));
+      parts.push_back(whole(view, pair, pixels));
     else
       for (std::size_t body = 1; body < to.size(); ++body)
-        if (to[body] != offsets[body]) {
-          const auto& box = geometry.scene.bodies[body].box;
-          regions.push_back(changed(view, pair, pixels, moved(box, offsets[body]), moved(box, to[body])));
-        }
+        if (to[body] != offsets[body])
+          parts.push_back(changed(view, pair, pixels, moved(geometry.scene.bodies[body].box, offsets[body]),
+                                  to[body] - offsets[body]));
   }
-  return regions;
+  return parts;
 }
 
-void Links::Parts::route(const std::vector<shaders::Region>& regions) {
+// The groups of texels on which something lay or may lie now: those beside a body that has moved, where it was
+// and where it is.
+std::vector<std::uint32_t> Links::Parts::in_contact(const std::vector<glm::vec3>& to, bool all,
+                                                    const TileBoxes& tiles) const {
+  const float gap = contact(geometry.sphere, settings.raster());
+  const auto meets = [&](const TileBoxes::Tile& tile, const scene::Box& box) {
+    return glm::all(glm::lessThanEqual(box.min - gap, tile.centre + tile.half)) &&
+           glm::all(glm::lessThanEqual(tile.centre - tile.half, box.max + gap));
+  };
+  std::vector<std::uint32_t> found;
+  for (std::uint32_t group = 0; group < tiles.groups.size(); ++group) {
+    bool near = all;
+    for (std::size_t body = 1; body < to.size() && !near; ++body) {
+      const auto& box = geometry.scene.bodies[body].box;
+      near = to[body] != offsets[body] && (meets(tiles.groups[group].around, moved(box, offsets[body])) ||
+                                           meets(tiles.groups[group].around, moved(box, to[body])));
+    }
+    if (near) found.push_back(group);
+  }
+  return found;
+}
+
+void Links::Parts::route(const std::vector<Part>& parts, const TileBoxes& tiles) {
   const auto pixels = settings.raster();
-  const auto coarse = table->bounds(geometry.shifts, shaders::TILE),
-             tiles = table->bounds(geometry.shifts, table->tile);
-  auto batches = pack(regions, layered->store.extent, pixels, coarse, tiles);
+  const auto overflow_before = solution.overflow_pixels;
+  auto batches = pack(parts, layered->store.extent, tiles);
   bool placed = false;  // the texels, in this store's buffers
   for (std::size_t batch = 0; batch < batches.size();) {
     auto& counted = counters.as<shaders::Counters>().front();
-    counted = {
-        .rays = 0, .misses = 0, .unknown = 0, .overflow_pixels = 0, .layers_max = solution.depth_layers_max};
+    counted = {};
+    counted.layers_max = solution.depth_layers_max;
     gpu::Frame frame(device, times);
     if (!placed) layered->route.read_receivers(frame, map, *table);
     placed = true;
@@ -238,17 +264,21 @@ void Links::Parts::route(const std::vector<shaders::Region>& regions) {
                    solution.overflow_pixels, settings.layers, counted.layers_max);
       layered.reset();  // first, so that both need not fit
       layered = std::make_unique<Layered>(device, settings, *table, std::bit_ceil(counted.layers_max));
-      batches = pack(regions, layered->store.extent, pixels, coarse, tiles);
+      batches = pack(parts, layered->store.extent, tiles);
       batch = 0;
       placed = false;
+      solution.overflow_pixels = overflow_before;
       continue;
     }
     solution.misses += counted.misses;
     solution.rays_unknown += counted.unknown;
     ++batch;
   }
+}
+
+void Links::Parts::find_cover(const std::vector<std::uint32_t>& groups) {
   gpu::Frame frame(device, times);
-  layered->route.find_cover(frame, geometry, map, *table, gather->directions(), pixels);
+  layered->route.find_cover(frame, geometry, map, *table, gather->directions(), settings.raster(), groups);
   frame.submit_and_wait();
 }
 

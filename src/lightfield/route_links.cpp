@@ -6,10 +6,14 @@
 #include "draw_scene.hpp"
 #include "shaders/emit_links.frag.h"
 #include "shaders/emit_links.vert.h"
+#include "shaders/emit_links_count.comp.h"
 #include "shaders/link_cover.comp.h"
 #include "shaders/receivers.comp.h"
+#include "shaders/route_doubts.comp.h"
 #include "shaders/route_links_16.comp.h"
 #include "shaders/route_links_32.comp.h"
+#include "shaders/route_rest_16.comp.h"
+#include "shaders/route_rest_32.comp.h"
 
 namespace lichtveld::lightfield {
 
@@ -23,6 +27,8 @@ constexpr std::uint64_t usual_store = 64 << 20;
 // Pairs that decide whether a texel is covered; it sees steeply along half of them.
 constexpr std::uint32_t cover_votes = 24;
 constexpr std::uint32_t widest_store = 4096;  // [pixels]; every device renders that
+// Workgroups of what the device itself counts how much there is to do of.
+constexpr std::uint32_t many_groups = 256;
 
 StoreExtent store_extent(const gpu::Device& device, std::uint32_t pixels, std::uint32_t capacity) {
   const std::uint64_t a_pixel = std::uint64_t{capacity} * 2 * sizeof(std::uint32_t),
@@ -48,11 +54,24 @@ void put(const gpu::Device& device, gpu::Buffer& buffer, const std::vector<T>& c
   std::memcpy(buffer.bytes().data(), contents.data(), bytes);
 }
 
+// Of route_links, route_doubts and route_rest, each of which leaves out what it does not use.
+gpu::Interface look_interface(const LinkStore& store, const LinkTable& table) {
+  std::vector kinds(14, Kind::storage_buffer);
+  kinds[6] = Kind::storage_image;
+  return {.kinds = kinds,
+          .push_bytes = sizeof(shaders::RouteLinksConstants),
+          .specialisation = {store.capacity, table.tile}};
+}
+
 gpu::Buffer host_buffer(const gpu::Device& device, const char* name) {
   return {device, name, sizeof(shaders::Region), vk::BufferUsageFlagBits::eStorageBuffer, gpu::Memory::host};
 }
 
 }  // namespace
+
+float contact(const scene::Sphere& sphere, std::uint32_t pixels) {
+  return shaders::CONTACT * 2 * sphere.radius / static_cast<float>(pixels);
+}
 
 LinkStore::LinkStore(const gpu::Device& device, const Settings& settings, std::uint32_t capacity)
     : extent(store_extent(device, settings.raster(), capacity)),
@@ -66,20 +85,23 @@ LinkStore::LinkStore(const gpu::Device& device, const Settings& settings, std::u
 
 RouteLinks::RouteLinks(const gpu::Device& device, const LinkStore& store, const LinkTable& table)
     : device_(device),
+      count_(
+          device, "emit_links", emit_links_count_comp,
+          {.kinds = std::vector(2, Kind::storage_buffer), .push_bytes = sizeof(shaders::CountLayersConstants)}),
       route_(device, "route_links",
              table.bits == 16 ? gpu::Spirv(route_links_16_comp) : gpu::Spirv(route_links_32_comp),
-             {.kinds = {Kind::storage_buffer, Kind::storage_buffer, Kind::storage_buffer, Kind::storage_buffer,
-                        Kind::storage_buffer, Kind::storage_buffer, Kind::storage_image, Kind::storage_buffer,
-                        Kind::storage_buffer, Kind::storage_buffer, Kind::storage_buffer, Kind::storage_buffer},
-              .push_bytes = sizeof(shaders::RouteLinksConstants),
-              .specialisation = {store.capacity, table.tile}}),
+             look_interface(store, table)),
+      route_doubts_(device, "route_links", route_doubts_comp, look_interface(store, table)),
+      route_rest_(device, "route_links",
+                  table.bits == 16 ? gpu::Spirv(route_rest_16_comp) : gpu::Spirv(route_rest_32_comp),
+                  look_interface(store, table)),
       receive_(device, "route_links", receivers_comp,
                {.kinds = {Kind::storage_buffer, Kind::storage_image, Kind::storage_image, Kind::storage_image,
                           Kind::storage_image, Kind::storage_buffer, Kind::storage_buffer},
                 .push_bytes = sizeof(shaders::BounceConstants)}),
       cover_(device, "route_links", link_cover_comp,
              {.kinds = {Kind::storage_buffer, Kind::storage_buffer, Kind::storage_buffer, Kind::storage_buffer,
-                        Kind::storage_image},
+                        Kind::storage_image, Kind::storage_buffer},
               .push_bytes = sizeof(shaders::CoverConstants),
               .specialisation = {table.bits}}),
       receivers_(device, "lightfield/receivers", table.texels * sizeof(shaders::Receiver),
@@ -88,15 +110,17 @@ RouteLinks::RouteLinks(const gpu::Device& device, const LinkStore& store, const 
                  vk::BufferUsageFlagBits::eStorageBuffer),
       regions_(host_buffer(device, "lightfield/regions")),
       jobs_(host_buffer(device, "lightfield/jobs")),
-      tiles_(host_buffer(device, "lightfield/tiles")) {
+      tiles_(host_buffer(device, "lightfield/tiles")),
+      groups_(host_buffer(device, "lightfield/covered_groups")),
+      doubts_(device, "lightfield/doubts", sizeof(glm::uvec2), vk::BufferUsageFlagBits::eStorageBuffer),
+      rest_(device, "lightfield/rest", sizeof(glm::uvec2), vk::BufferUsageFlagBits::eStorageBuffer) {
   for (const std::uint32_t double_sided : {0u, 1u})
-    draw_.emplace_back(
-        device, "emit_links", emit_links_vert, emit_links_frag,
-        gpu::Interface{.kinds = {Kind::storage_buffer, Kind::storage_buffer, Kind::storage_image,
-                                 Kind::storage_buffer, Kind::storage_buffer, Kind::storage_buffer},
-                       .push_bytes = sizeof(shaders::EmitLinksConstants),
-                       .specialisation = {double_sided}},
-        scene_state());
+    draw_.emplace_back(device, "emit_links", emit_links_vert, emit_links_frag,
+                       gpu::Interface{.kinds = {Kind::storage_buffer, Kind::storage_buffer, Kind::storage_image,
+                                                Kind::storage_buffer, Kind::storage_buffer},
+                                      .push_bytes = sizeof(shaders::EmitLinksConstants),
+                                      .specialisation = {double_sided}},
+                       scene_state());
 }
 
 void RouteLinks::read_receivers(gpu::Frame& frame, const LightMap& map, const LinkTable& table) const {
@@ -108,17 +132,19 @@ void RouteLinks::read_receivers(gpu::Frame& frame, const LightMap& map, const Li
 }
 
 void RouteLinks::find_cover(gpu::Frame& frame, const Geometry& geometry, const LightMap& map,
-                            const LinkTable& table, const gpu::Buffer& directions, std::uint32_t pixels) const {
+                            const LinkTable& table, const gpu::Buffer& directions, std::uint32_t pixels,
+                            const std::vector<std::uint32_t>& groups) {
+  if (groups.empty()) return;
+  put(device_, groups_, groups);
   const auto& chunk = table.chunks.front();
   frame.compute(cover_,
                 {gpu::reads(chunk.links), gpu::reads(directions), gpu::reads(receivers_),
-                 gpu::reads(positions_), gpu::writes(map.cover)},
-                shaders::CoverConstants{
-                    .texels = table.texels,
-                    .pairs = chunk.pairs,
-                    .votes = std::min(chunk.pairs, cover_votes),
-                    .contact = shaders::CONTACT * 2 * geometry.sphere.radius / static_cast<float>(pixels)},
-                table.groups(), 1);
+                 gpu::reads(positions_), gpu::writes(map.cover), gpu::reads(groups_)},
+                shaders::CoverConstants{.texels = table.texels,
+                                        .pairs = chunk.pairs,
+                                        .votes = std::min(chunk.pairs, cover_votes),
+                                        .contact = contact(geometry.sphere, pixels)},
+                static_cast<std::uint32_t>(groups.size()), 1);
 }
 
 void RouteLinks::record(gpu::Frame& frame, const RegionBatch& batch, const Geometry& geometry,
@@ -127,40 +153,57 @@ void RouteLinks::record(gpu::Frame& frame, const RegionBatch& batch, const Geome
   put(device_, regions_, batch.regions);
   put(device_, jobs_, batch.jobs);
   put(device_, tiles_, batch.tiles);
+  const auto rays = batch.tiles.size() * table.tile * sizeof(glm::uvec2);
+  for (auto* list : {&doubts_, &rest_})
+    if (rays > list->size())
+      *list = gpu::Buffer(device_, list->name(), rays, vk::BufferUsageFlagBits::eStorageBuffer);
+
   frame.clear("emit_links", store.filled);
-  const std::vector bindings = {gpu::reads(geometry.offsets), gpu::reads(regions_),
-                                gpu::reads(table.number),     gpu::writes(store.filled),
-                                gpu::writes(store.layers),    gpu::writes(counters)};
+  const std::vector bindings = {gpu::reads(geometry.offsets), gpu::reads(regions_), gpu::reads(table.number),
+                                gpu::writes(store.filled), gpu::writes(store.layers)};
   const shaders::EmitLinksConstants emit{.size = pixels,
                                          .store_width = store.extent.width,
                                          .store_height = store.extent.height,
-                                         .capacity = store.capacity,
-                                         .limit = limit};
+                                         .capacity = store.capacity};
   const auto instances = static_cast<std::uint32_t>(batch.regions.size());
   frame.render("emit_links", {.extent = {store.extent.width, store.extent.height}}, bindings,
                {&geometry.vertices, &geometry.indices},
                [&](gpu::Draw& draw) { draw_scene(draw, draw_, geometry, bindings, emit, instances); });
+  frame.compute(count_, {gpu::reads(store.filled), gpu::writes(counters)},
+                shaders::CountLayersConstants{.pixels = batch.rows * store.extent.width, .limit = limit},
+                many_groups, 1);
+
+  const auto look = [&](const gpu::ComputePipeline& pipeline, const LinkTable::Chunk& chunk,
+                        std::uint32_t first_job, std::uint32_t groups) {
+    frame.compute(pipeline,
+                  {gpu::reads(store.layers), gpu::reads(store.filled), gpu::reads(regions_), gpu::reads(jobs_),
+                   gpu::reads(receivers_), gpu::reads(positions_), gpu::reads(map.position),
+                   gpu::reads(geometry.walls_first), gpu::reads(geometry.walls), gpu::writes(chunk.links),
+                   gpu::writes(counters), gpu::reads(tiles_), gpu::writes(doubts_), gpu::writes(rest_)},
+                  shaders::RouteLinksConstants{.size = pixels,
+                                               .store_width = store.extent.width,
+                                               .store_pixels = store.extent.width * store.extent.height,
+                                               .texels = table.texels,
+                                               .first_pair = chunk.first_pair,
+                                               .pairs = chunk.pairs,
+                                               .first_job = first_job},
+                  groups, 1);
+  };
   // Jobs stand in the order of their pairs, and so of the table's chunks.
+  std::vector<const LinkTable::Chunk*> touched;
   auto first = batch.jobs.begin();
   for (const auto& chunk : table.chunks) {
     const auto end = std::find_if(first, batch.jobs.end(), [&](const shaders::RouteJob& job) {
       return static_cast<std::uint32_t>(batch.regions[job.region].place.z) >= chunk.first_pair + chunk.pairs;
     });
     if (first == end) continue;
-    frame.compute(
-        route_,
-        {gpu::reads(store.layers), gpu::reads(store.filled), gpu::reads(regions_), gpu::reads(jobs_),
-         gpu::reads(receivers_), gpu::reads(positions_), gpu::reads(map.position),
-         gpu::reads(geometry.walls_first), gpu::reads(geometry.walls), gpu::writes(chunk.links),
-         gpu::writes(counters), gpu::reads(tiles_)},
-        shaders::RouteLinksConstants{.size = pixels,
-                                     .store_width = store.extent.width,
-                                     .texels = table.texels,
-                                     .first_pair = chunk.first_pair,
-                                     .first_job = static_cast<std::uint32_t>(first - batch.jobs.begin())},
-        static_cast<std::uint32_t>(end - first), 1);
+    look(route_, chunk, static_cast<std::uint32_t>(first - batch.jobs.begin()),
+         static_cast<std::uint32_t>(end - first));
+    touched.push_back(&chunk);
     first = end;
   }
+  look(route_doubts_, table.chunks.front(), 0, many_groups);
+  for (const auto* chunk : touched) look(route_rest_, *chunk, 0, many_groups);
 }
 
 }  // namespace lichtveld::lightfield

@@ -19,6 +19,9 @@ struct LinkStore {
   gpu::Buffer filled, layers;
 };
 
+// As far above a surface others lie on it [m], before rasters of `pixels` a side.
+float contact(const scene::Sphere& sphere, std::uint32_t pixels);
+
 class RouteLinks {
  public:
   RouteLinks(const gpu::Device& device, const LinkStore& store, const LinkTable& table);
@@ -26,9 +29,10 @@ class RouteLinks {
   // Reads where the texels are from the geometry texture: whenever that has been drawn again.
   void read_receivers(gpu::Frame& frame, const LightMap& map, const LinkTable& table) const;
 
-  // Writes `cover`, for what has been routed.
+  // Writes `cover` of the texels of these groups of the table, for what has been routed.
   void find_cover(gpu::Frame& frame, const Geometry& geometry, const LightMap& map, const LinkTable& table,
-                  const gpu::Buffer& directions, std::uint32_t pixels) const;
+                  const gpu::Buffer& directions, std::uint32_t pixels,
+                  const std::vector<std::uint32_t>& groups);
 
   // Records one batch into the frame; its regions and jobs stay on the device until the next. `limit` layers
   // are asked for; pixels with more, misses and unknown rays are added to `counters`.
@@ -39,9 +43,10 @@ class RouteLinks {
  private:
   const gpu::Device& device_;
   std::vector<gpu::GraphicsPipeline> draw_;  // one-sided, double-sided
-  gpu::ComputePipeline route_, receive_, cover_;
-  gpu::Buffer receivers_, positions_;   // of each valid texel
-  gpu::Buffer regions_, jobs_, tiles_;  // host-visible
+  gpu::ComputePipeline count_, route_, route_doubts_, route_rest_, receive_, cover_;
+  gpu::Buffer receivers_, positions_;            // of each valid texel
+  gpu::Buffer regions_, jobs_, tiles_, groups_;  // host-visible
+  gpu::Buffer doubts_, rest_;                    // rays that are not done with
 };
 
 }  // namespace lichtveld::lightfield

@@ -160,8 +160,8 @@ void Thesis::Parts::render_bounce(bool count, Solution& solution, const StageObs
 
 void Thesis::Parts::render_psfs(std::size_t first, std::size_t end, bool count, Solution& solution) {
   auto& counted = counters.as<shaders::Counters>().front();
-  counted = {
-      .rays = 0, .misses = 0, .unknown = 0, .overflow_pixels = 0, .layers_max = solution.depth_layers_max};
+  counted = {};
+  counted.layers_max = solution.depth_layers_max;
   gpu::Frame frame(device, times);
   for (std::size_t psf = first; psf < end; ++psf) {
     layered->emit.record(frame, view(psf), geometry, map, layered->store, settings.layers, count, counters);

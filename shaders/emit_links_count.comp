@@ -1,0 +1,21 @@
+// How many layers the store's pixels have: the most of one, and how many have more than were asked for.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "shared.h"
+#include "layer_link.glsl"
+
+layout(local_size_x = TILE) in;
+layout(binding = 0) readonly buffer Filled { uint filled[]; };
+layout(binding = 1) buffer Counted { Counters counters; };
+layout(push_constant) uniform Push { CountLayersConstants constants; };
+
+void main() {
+  uint most = 0u, over = 0u;
+  for (uint pixel = gl_GlobalInvocationID.x; pixel < constants.pixels; pixel += gl_NumWorkGroups.x * TILE) {
+    const uint layers = layers_of_both(filled[pixel]);
+    most = max(most, layers);
+    if (layers > constants.limit) ++over;
+  }
+  atomicMax(counters.layers_max, most);
+  atomicAdd(counters.overflow_pixels, over);
+}

@@ -1,0 +1,86 @@
+// Rays of texels along a pair's two directions, and the A-buffer of texel numbers that they look into. Included by a
+// shader that declares `table` at binding 9 and put_link(index of the pair in the chunk, texel, link).
+
+layout(local_size_x_id = 1) in;  // a tile
+layout(binding = 0) readonly buffer Layers { uvec2 layers[]; };
+layout(binding = 1) readonly buffer Filled { uint filled[]; };
+layout(binding = 2) readonly buffer Regions { Region regions[]; };
+layout(binding = 4) readonly buffer Receivers { Receiver receivers[]; };
+layout(binding = 5) readonly buffer Positions { vec4 positions[]; };  // xyz [m]; w: the atlas texel
+layout(binding = 10) buffer Counted { Counters counters; };
+// Rays that are not done with: texel, region.
+layout(binding = 12) buffer Doubts { uvec2 doubts[]; };
+layout(binding = 13) buffer Rest { uvec2 rest[]; };
+layout(push_constant) uniform Push { RouteLinksConstants constants; };
+
+const uint NOTHING_SEEN = 0x80000000u;  // a doubt's region: no layer was found
+layout(constant_id = 0) const uint CAPACITY = 16;
+#include "layer_link.glsl"
+
+// A texel before a region's raster.
+struct Sight {
+  vec2 projected;  // in PSF coordinates
+  ivec2 nearest;   // pixel
+  vec2 within;     // of the texel, from the nearest pixel's centre [pixels]
+  bool inside;     // all that it may look at is in the region
+  float sign;      // 1: light that it receives travels along the pair's direction; -1: against it
+  vec3 travel;     // unit, of that light
+  float face_cosine;
+  float depth;     // along `travel`
+  float scale;     // of metres to PSF coordinates
+  vec2 slope;      // of its plane's depth along right and up
+};
+
+Sight look(vec3 place, vec3 face, Region region) {
+  const PsfView view = region.view;
+  const float size = float(constants.size);
+  const vec4 p = vec4(place, 1.0);
+  Sight sight;
+  sight.projected = vec2(dot(view.right, p), dot(view.up, p));
+  const vec2 in_pixels = (sight.projected * 0.5 + 0.5) * size;
+  sight.nearest = ivec2(in_pixels);
+  sight.within = in_pixels - vec2(sight.nearest) - 0.5;
+  const ivec2 first = sight.nearest + ivec2(sight.within.x < 0.0 ? -1 : 0, sight.within.y < 0.0 ? -1 : 0);
+  const ivec2 last = ivec2(size) - 1, low = clamp(first, ivec2(0), last), high = clamp(first + 1, ivec2(0), last);
+  sight.inside =
+      all(greaterThanEqual(low, region.rect.xy)) && all(lessThan(high, region.rect.xy + region.rect.zw));
+  sight.sign = dot(face, view.direction.xyz) > 0.0 ? -1.0 : 1.0;
+  sight.travel = sight.sign * view.direction.xyz;
+  sight.face_cosine = -dot(face, sight.travel);
+  sight.depth = sight.sign * dot(view.along, p);
+  sight.scale = length(view.along.xyz);
+  sight.slope = vec2(dot(face, view.right.xyz), dot(face, view.up.xyz)) / (sight.scale * sight.face_cosine);
+  return sight;
+}
+
+// From the texel to a pixel's centre, in PSF coordinates.
+vec2 shift_to(ivec2 pixel, Sight sight) {
+  return (vec2(pixel) + 0.5) * (2.0 / float(constants.size)) - 1.0 - sight.projected;
+}
+
+// The same in the texel's plane [m].
+vec3 away_to(vec2 shift, Sight sight, Region region) {
+  const vec3 across = region.view.right.xyz * shift.x + region.view.up.xyz * shift.y;
+  return (across / sight.scale + sight.travel * dot(shift, sight.slope)) / sight.scale;
+}
+
+// The nearest layer of a pixel in front of a receiver, at most `limit` deep along the light that it receives; -1 if there
+// is none. Layers that are not asked for, where `wanted` is false.
+int nearest_in_front(ivec2 pixel, Region region, float sign, float limit, bool wanted) {
+  const ivec2 stored = pixel - region.rect.xy + region.place.xy;
+  const uint index = uint(stored.y) * constants.store_width + uint(stored.x);
+  const uint counts = wanted ? filled[index] : 0u;
+  const bool along = sign > 0.0;
+  const uint count = min(layers_of(counts, along), CAPACITY);
+  int found = -1;
+  float nearest = -NO_LAYER;
+  for (uint k = 0u; k < count; ++k) {
+    const uvec2 layer = layers[place_of(k, along, CAPACITY) * constants.store_pixels + index];
+    const float depth = sign * uintBitsToFloat(layer.y);
+    if (depth <= limit && depth > nearest) {
+      nearest = depth;
+      found = int(layer.x);
+    }
+  }
+  return found;
+}

@@ -1,0 +1,49 @@
+// The rays that see nothing at their nearest pixel, or that a wall stands before. Looks at all of the 2 x 2 pixels around
+// the texel.
+#include "link_rays.glsl"
+
+layout(binding = 6, rgba32f) uniform readonly image2D position;
+layout(binding = 7) readonly buffer WallsFirst { uint walls_first[]; };
+layout(binding = 8) readonly buffer Walls { vec4 walls[]; };
+#include "receiver.glsl"
+
+void route(uint me, Region region) {
+  const Receiver receiver = receivers[me];
+  const vec3 face = receiver.face_and_triangle.xyz;
+  const vec4 place = positions[me];
+  const Sight sight = look(place.xyz, face, region);
+  const float pixel_width = 2.0 / float(constants.size);
+  const float tolerance = receiver_tolerance(sight.slope, pixel_width);
+  const float margin = wall_margin(pixel_width, sight.face_cosine * sight.scale);
+  int link = -1;
+  bool known = false;
+  // As in stencil_routing: of the 2 x 2 pixels the nearest that tells what the texel sees.
+  for (uint choice = 0u; choice < 8u; ++choice) {
+    const ivec2 pixel =
+        clamp(sight.nearest + beside_nearest(choice % 4u, sight.within), ivec2(0), ivec2(constants.size) - 1);
+    const vec2 shift = shift_to(pixel, sight);
+    const vec3 away = away_to(shift, sight, region);
+    if (wall_between(receiver.near, uint(receiver.face_and_triangle.a), place.xyz, away, face, margin, choice >= 4u))
+      continue;
+    known = true;
+    const float limit = receiver_depth(shift, sight.depth, sight.slope) + tolerance;
+    link = nearest_in_front(pixel, region, sight.sign, limit, true);
+    if (link >= 0) break;
+    const uint texel = uint(place.w), width = uint(imageSize(position).x);
+    if (chart_reaches(ivec2(texel % width, texel / width), place.xyz, away)) break;
+  }
+  put_link(uint(region.place.z) - constants.first_pair, me,
+           link >= 0 ? uint(link) : known ? MISS(constants.texels) : UNKNOWN(constants.texels));
+  if (link >= 0) return;
+  if (known) atomicAdd(counters.misses, 1u);
+  else atomicAdd(counters.unknown, 1u);
+}
+
+void main() {
+  const uint count = counters.rest, all = gl_NumWorkGroups.x * gl_WorkGroupSize.x;
+  for (uint index = gl_GlobalInvocationID.x; index < count; index += all) {
+    const Region region = regions[rest[index].y];
+    const uint pair = uint(region.place.z);
+    if (pair >= constants.first_pair && pair < constants.first_pair + constants.pairs) route(rest[index].x, region);
+  }
+}

@@ -1,0 +1,28 @@
+// Whether a wall stands between a texel and the pixel that told what it sees. Then its ray, like those that saw nothing,
+// belongs to the rest.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "shared.h"
+#include "link_rays.glsl"
+
+layout(binding = 8) readonly buffer Walls { vec4 walls[]; };
+#include "receiver_plane.glsl"
+#include "wall.glsl"
+
+void main() {
+  const uint count = counters.doubts, all = gl_NumWorkGroups.x * gl_WorkGroupSize.x;
+  for (uint index = gl_GlobalInvocationID.x; index < count; index += all) {
+    const uvec2 doubt = doubts[index], ray = uvec2(doubt.x, doubt.y & ~NOTHING_SEEN);
+    const Region region = regions[ray.y];
+    const Receiver receiver = receivers[ray.x];
+    const vec3 place = positions[ray.x].xyz, face = receiver.face_and_triangle.xyz;
+    const Sight sight = look(place, face, region);
+    const float margin = wall_margin(2.0 / float(constants.size), sight.face_cosine * sight.scale);
+    const vec3 away = away_to(shift_to(sight.nearest, sight), sight, region);
+    const bool between = is_between(receiver.near.x, place, away, face, margin, false) ||
+                         is_between(receiver.near.y, place, away, face, margin, false);
+    // With three walls in reach the two nearest do not decide.
+    if (doubt != ray || between || length(away) + margin >= uintBitsToFloat(receiver.near.w))
+      rest[atomicAdd(counters.rest, 1u)] = ray;
+  }
+}
