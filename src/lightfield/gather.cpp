@@ -54,8 +54,9 @@ void Gather::start(gpu::Frame& frame, const LightMap& map, const LinkTable& tabl
   end(frame, map, table);
 }
 
-void Gather::bounce(gpu::Frame& frame, const LightMap& map, const LinkTable& table) const {
-  for (std::uint32_t half = 0; half < 2; ++half) {
+void Gather::bounce(gpu::Frame& frame, const LightMap& map, const LinkTable& table,
+                    std::initializer_list<std::uint32_t> halves) const {
+  for (const auto half : halves) {
     const std::uint32_t begin = half * pairs_ / 2, finish = begin + pairs_ / 2;
     bool add = false;
     for (const auto& chunk : table.chunks) {

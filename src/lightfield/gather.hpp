@@ -5,6 +5,7 @@
 #pragma once
 
 #include <array>
+#include <initializer_list>
 
 #include "lichtveld/lightfield/directions.hpp"
 #include "link_table.hpp"
@@ -19,7 +20,9 @@ class Gather {
 
   // L = Le: no bounce yet.
   void start(gpu::Frame& frame, const LightMap& map, const LinkTable& table) const;
-  void bounce(gpu::Frame& frame, const LightMap& map, const LinkTable& table) const;
+  // Over these halves of the directions; of the others the sums of before count on.
+  void bounce(gpu::Frame& frame, const LightMap& map, const LinkTable& table,
+              std::initializer_list<std::uint32_t> halves = {0, 1}) const;
 
   const gpu::Buffer& directions() const { return directions_; }  // vec4 a pair: xyz; w: solid angle [sr]
 

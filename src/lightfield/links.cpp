@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 #include <limits>
+#include <utility>
 
 #include "brdf.hpp"
 #include "convergence.hpp"
@@ -102,6 +103,8 @@ struct Links::Parts {
   std::unique_ptr<Layered> layered;
   std::vector<glm::vec3> offsets;  // of the bodies as they are linked; empty before the first time
   bool lit = false;                // there is light to start from
+  bool stepped = false;            // the links have changed since the last bounce
+  std::uint32_t next_half = 0;     // of the directions
   Solution solution;               // of the last solve or update
 
   std::uint32_t pairs() const { return settings.psf / 2; }
@@ -116,6 +119,7 @@ struct Links::Parts {
   void find_cover(const std::vector<std::uint32_t>& groups);
   void start();
   void bounce();
+  void half_bounce();
   void converge(const std::function<bool(std::uint32_t)>& enough);
   void present();
 };
@@ -196,6 +200,7 @@ void Links::Parts::link(const std::vector<glm::vec3>& to) {
   offsets.clear();  // should this fail half-way, nothing is known
   route(parts, tiles);
   find_cover(groups);
+  stepped = true;
   offsets = to;
 }
 
@@ -298,6 +303,16 @@ void Links::Parts::bounce() {
   solution.residual = bound_on_missing(change.most, brightest_of_scene.albedo, change.mean);
 }
 
+// What serve shows while things move: a bounce over every other direction costs half, and leaves of the other half the
+// light of one step ago. It says nothing about what is missing.
+void Links::Parts::half_bounce() {
+  gpu::Frame frame(device, times);
+  gather->bounce(frame, map, *table, {next_half});
+  frame.submit_and_wait();
+  next_half = 1 - next_half;
+  ++solution.bounces;
+}
+
 // As many bounces as are asked for; or until the bound is met, or falls no more: with few directions the
 // packing's last digits may go on flickering by more.
 void Links::Parts::converge(const std::function<bool(std::uint32_t)>& enough) {
@@ -307,7 +322,13 @@ void Links::Parts::converge(const std::function<bool(std::uint32_t)>& enough) {
     solution.settled = true;
     return;
   }
+  const bool step = std::exchange(stepped, false) && lit;
   if (!lit) start();
+  if (step && settings.step_bounces < 1) {
+    half_bounce();
+    if (enough(solution.bounces)) return;
+  }
+  const auto asked = step ? static_cast<std::uint32_t>(settings.step_bounces) : 0;
   double least = std::numeric_limits<double>::infinity();
   std::uint32_t since = 0;
   do {
@@ -315,7 +336,7 @@ void Links::Parts::converge(const std::function<bool(std::uint32_t)>& enough) {
     since = solution.residual < least ? 0 : since + 1;
     least = std::min(least, solution.residual);
     solution.settled = solution.residual < converged || since == patience || solution.bounces == most_bounces;
-  } while (!solution.settled && !enough(solution.bounces));
+  } while (!solution.settled && (solution.bounces < asked || !enough(solution.bounces)));
 }
 
 void Links::Parts::present() {

@@ -24,6 +24,8 @@ struct Settings {
   ABuffer abuffer = ABuffer::stencil;
   Sort sort = Sort::compare_swap;
   Weights weights = Weights::solid_angle;
+  // links: bounces of the map after a move, 1.. or 0.5: over half of the directions, the next map over the others.
+  float step_bounces = 0.5f;
   std::uint64_t seed = 0;  // of the directions' rotations and rasters: the same seed gives the same light map
 
   std::uint32_t raster() const { return psf_size > 0 ? psf_size : size; }  // of a PSF [pixels a side]
@@ -33,7 +35,7 @@ struct Settings {
 void check(const Settings& settings);
 
 struct Solution {
-  std::uint32_t bounces = 0;
+  std::uint32_t bounces = 0;  // one over half of the directions counts too
   // What may still be missing from E, as a share of its mean: largest change in the last bounce / (1 - max
   // albedo), which is more than all later bounces add. Infinite where some albedo is 1.
   double residual = 0;
