@@ -4,9 +4,13 @@
  *   either way       {"id":PEER,"type":"offer"|"answer","description":SDP}
  *                    {"id":PEER,"type":"candidate","candidate":LINE,"mid":MID}
  *   server -> client {"id":PEER,"type":"role","cube":0|1|2,"players":N,"watchers":M}
+ *   server -> relay  {"type":"work","stages":[{"name":NAME,"runs":N,"seconds":S},...],"passes":[...]}
+ *                    what the render server's work has taken since its start, shown in /metrics
  *
+ * @typedef {{name: string, runs: number, seconds: number}[]} Times
+ * @typedef {{type: 'work', stages: Times, passes: Times}} Work
  * @typedef {{id: string, type: string} & Record<string, string | number>} Message
- * @typedef {{message: Message} | {refused: string}} Parsed
+ * @typedef {{message: Message} | {work: Work} | {refused: string}} Parsed
  */
 
 const maxIdLength = 36;
@@ -31,6 +35,28 @@ const fieldsOf = {
   },
 };
 
+/** @type {(value: unknown, limits: import('./limits.js').Limits) => Times | undefined} */
+function timesOf(value, { maxWorkTimes }) {
+  if (!Array.isArray(value) || value.length > maxWorkTimes) return undefined;
+  const good = value.every(
+    (time) =>
+      typeof time === 'object' &&
+      time !== null &&
+      typeof time.name === 'string' &&
+      /^[a-z_]{1,32}$/.test(time.name) &&
+      isCount(time.runs, Number.MAX_SAFE_INTEGER) &&
+      Number.isFinite(time.seconds) &&
+      time.seconds >= 0,
+  );
+  return good ? value.map(({ name, runs, seconds }) => ({ name, runs, seconds })) : undefined;
+}
+
+/** @type {(json: Record<string, unknown>, limits: import('./limits.js').Limits) => Parsed} */
+function parseWork(json, limits) {
+  const [stages, passes] = [timesOf(json.stages, limits), timesOf(json.passes, limits)];
+  return stages && passes ? { work: { type: 'work', stages, passes } } : { refused: 'malformed' };
+}
+
 /**
  * @param {string} text  one text message as it came
  * @param {'server' | 'client'} sender
@@ -45,8 +71,10 @@ export function parseMessage(text, sender, limits) {
     return { refused: 'not_json' };
   }
   if (typeof json !== 'object' || json === null || Array.isArray(json)) return { refused: 'malformed' };
-  if (typeof json.type !== 'string' || !Object.hasOwn(fieldsOf, json.type)) return { refused: 'unknown_type' };
-  if (json.type === 'role' && sender !== 'server') return { refused: 'forbidden_type' };
+  const known = json.type === 'work' || (typeof json.type === 'string' && Object.hasOwn(fieldsOf, json.type));
+  if (!known) return { refused: 'unknown_type' };
+  if (['role', 'work'].includes(json.type) && sender !== 'server') return { refused: 'forbidden_type' };
+  if (json.type === 'work') return parseWork(json, limits);
   if (!isText(json.id, maxIdLength)) return { refused: 'malformed' };
 
   const message = { id: json.id, type: json.type };

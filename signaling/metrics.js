@@ -1,7 +1,7 @@
 import { Counter, Gauge, Registry } from 'prom-client';
 
 /**
- * The counters of one signaling server, in a registry of their own.
+ * The counters of one signaling server, and what the render server says of its work, in a registry of their own.
  * @param {import('./room.js').Room} room
  */
 export function createMetrics(room) {
@@ -23,8 +23,31 @@ export function createMetrics(room) {
 
   gauge('clients', 'Clients connected now.', () => room.clientCount);
   gauge('server_connected', '1 while a render server is connected, else 0.', () => Number(room.hasServer));
+
+  /** @type {(of: string, label: string) => (times: import('./messages.js').Times) => void} */
+  const workOf = (of, label) => {
+    const total = (name, help) =>
+      new Gauge({ name: `lichtveld_server_${label}_${name}`, help, labelNames: [label], registers });
+    const runs = total('runs_total', `How often ${of} has run since the render server's start.`);
+    const seconds = total('seconds_total', `Seconds that ${of} has taken since the render server's start.`);
+    return (times) => {
+      runs.reset();
+      seconds.reset();
+      for (const time of times) {
+        runs.set({ [label]: time.name }, time.runs);
+        seconds.set({ [label]: time.name }, time.seconds);
+      }
+    };
+  };
+  const showStages = workOf('each stage of a map', 'stage');
+  const showPasses = workOf('each pass on the GPU', 'pass');
   return {
     registry,
+    /** What the render server's work has taken; nothing is shown while none is there. */
+    showWork: ({ stages, passes } = { stages: [], passes: [] }) => {
+      showStages(stages);
+      showPasses(passes);
+    },
     connections: counter('connections_total', 'Connections accepted, by role.', ['role']),
     refusedConnections: counter('refused_connections_total', 'Connections refused, by reason.', ['reason']),
     refusedMessages: counter('refused_messages_total', 'Messages refused, by reason.', ['reason']),

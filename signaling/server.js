@@ -41,6 +41,7 @@ export async function startSignaling({ log = () => {}, allowedOrigins = [], ...o
       onMessage(text) {
         const parsed = parseMessage(text, role, limits);
         if ('refused' in parsed) return connection.refuse(parsed.refused);
+        if ('work' in parsed) return metrics.showWork(parsed.work);
         const relayed = room.relay(id, parsed.message);
         if ('refused' in relayed) return connection.refuse(relayed.refused);
         metrics.relayedMessages.inc({ type: parsed.message.type });
@@ -49,6 +50,7 @@ export async function startSignaling({ log = () => {}, allowedOrigins = [], ...o
       },
       onClose() {
         connections.delete(id);
+        if (role === 'server') metrics.showWork();
         onClose();
         deliver(room.leaves(id));
         log(`${role} ${id} left; ${room.clientCount} clients`);

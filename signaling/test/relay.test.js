@@ -20,6 +20,53 @@ test("messages reach the named peer with the sender's id and only the known fiel
   assert.equal(await metric(signaling, 'relayed_messages_total{type="role"}'), 1);
 });
 
+test("the render server's work is shown in /metrics while it is there, and nobody else's", async (t) => {
+  const signaling = await start(t);
+  const { server, serverId, clients } = await populate(signaling, 1);
+  const [{ peer: client }] = clients;
+  /** In the order of one connection: once this has come, everything before it has been taken. */
+  const sync = async () => {
+    server.send({ id: clients[0].id, type: 'answer', description: 'v=0' });
+    await client.next();
+  };
+  const stages = [{ name: 'update', runs: 3, seconds: 0.25, sneaked: 'in' }];
+  server.send({ type: 'work', stages, passes: [{ name: 'gather', runs: 6, seconds: 0.125 }] });
+  await sync();
+  const text = await (await fetch(`${signaling.http}/metrics`)).text();
+  assert.match(text, /^lichtveld_server_stage_seconds_total\{stage="update"\} 0.25$/m);
+  assert.match(text, /^lichtveld_server_stage_runs_total\{stage="update"\} 3$/m);
+  assert.match(text, /^lichtveld_server_pass_seconds_total\{pass="gather"\} 0.125$/m);
+
+  const many = Array.from({ length: defaultLimits.maxWorkTimes + 1 }, () => stages[0]);
+  const malformed = [
+    undefined,
+    'text',
+    many,
+    [null],
+    [{ name: 'Update"}', runs: 1, seconds: 1 }],
+    [{ name: ['update'], runs: 1, seconds: 1 }],
+    [{ name: 'update', runs: -1, seconds: 1 }],
+    [{ name: 'update', runs: 0.5, seconds: 1 }],
+    [{ name: 'update', runs: 1, seconds: -1 }],
+    [{ name: 'update', runs: 1, seconds: null }],
+  ];
+  for (const bad of malformed) server.send({ type: 'work', stages: bad, passes: [] });
+  client.send({ type: 'work', stages: [], passes: [] });
+  client.send({ id: serverId, type: 'offer', description: 'v=0' });
+  await server.next();
+  await sync();
+  assert.equal(await metric(signaling, 'refused_messages_total{reason="malformed"}'), malformed.length);
+  assert.equal(await metric(signaling, 'refused_messages_total{reason="forbidden_type"}'), 1);
+  assert.match(
+    await (await fetch(`${signaling.http}/metrics`)).text(),
+    /stage_runs_total\{stage="update"\} 3/,
+  );
+
+  server.socket.close();
+  await client.next();
+  assert.doesNotMatch(await (await fetch(`${signaling.http}/metrics`)).text(), /stage="update"/);
+});
+
 test('the server hears of a client that leaves, however it leaves', async (t) => {
   const signaling = await start(t);
   const { server, clients } = await populate(signaling, 2);

@@ -15,10 +15,15 @@ namespace lichtveld::commands {
 class PlaceInbox {
  public:
   using Places = std::vector<stream::Place>;
+  using Clock = std::chrono::steady_clock;
+  struct News {
+    Places places;
+    Clock::time_point came;
+  };
 
   void put(Places places) {
     const std::lock_guard lock(mutex_);
-    newest_ = std::move(places);
+    newest_ = News{std::move(places), Clock::now()};
     changed_.notify_one();
   }
 
@@ -40,16 +45,17 @@ class PlaceInbox {
   }
 
   // The newest places, once; empty when none came in time or when stopped.
-  std::optional<Places> take(std::chrono::milliseconds patience) {
+  std::optional<News> take(std::chrono::milliseconds patience) {
     std::unique_lock lock(mutex_);
     changed_.wait_for(lock, patience, [&] { return newest_ || stopped_; });
-    return stopped_ ? std::nullopt : std::exchange(newest_, std::nullopt);
+    if (stopped_) return std::nullopt;
+    return std::exchange(newest_, std::nullopt);
   }
 
  private:
   mutable std::mutex mutex_;
   std::condition_variable changed_;
-  std::optional<Places> newest_;
+  std::optional<News> newest_;
   bool stopped_ = false;
 };
 

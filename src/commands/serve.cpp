@@ -3,16 +3,18 @@
 
 #include <chrono>
 #include <fstream>
+#include <optional>
 
 #include "command_list.hpp"
 #include "lichtveld/scene/collision.hpp"
-#include "lichtveld/stream/encoder.hpp"
 #include "lichtveld/stream/hash.hpp"
+#include "map_sender.hpp"
 #include "options.hpp"
 #include "place_inbox.hpp"
 #include "quality.hpp"
 #include "solver.hpp"
 #include "stop_signals.hpp"
+#include "work_log.hpp"
 
 namespace lichtveld::commands {
 
@@ -74,32 +76,58 @@ stream::Place moved(const scene::Scene& scene, std::size_t cube, const Places& p
   return {places[cube].x + free.x, places[cube].y + free.y};
 }
 
-class RenderLoop {
+// Keeps the light of the room: the part of the pipeline that owns the device.
+class Light {
  public:
-  RenderLoop(const scene::Scene& scene, const gpu::Device& device, const ServeOptions& options)
-      : scene_(scene),
-        size_(options.settings.size),
-        solver_(make_solver(options.method, device, scene, options.settings)) {}
+  Light(const scene::Scene& scene, const gpu::Device& device, const ServeOptions& options, WorkLog& log)
+      : scene_(scene), log_(log), solver_(make_solver(options.method, device, scene, options.settings)) {}
 
-  // Publishes the light map with the cubes at these places; false once the light has settled and there was
-  // nothing to publish. A map ends early where enough() says so.
-  bool render(const Places& places, const Solver::Enough& enough, stream::Server& server) {
-    if (settled_ && places == places_) return false;
-    settled_ = solver_->update(offsets_of(scene_, places), enough).settled;
-    places_ = places;
-    server.publish(stream::encode_png(solver_->presented(), size_), places);
-    return true;
+  // The light map with the cubes at these places, sRGB RGBA; nothing once the light has settled. It ends early
+  // where enough() says so.
+  std::optional<std::vector<std::uint8_t>> update(const Places& places, const Solver::Enough& enough) {
+    if (settled_ && places == places_) return std::nullopt;
+    return log_.time("update", [&] {
+      settled_ = solver_->update(offsets_of(scene_, places), enough).settled;
+      places_ = places;
+      log_.set_passes(solver_->times());
+      return solver_->presented();
+    });
   }
 
   bool settled() const { return settled_; }
 
  private:
   const scene::Scene& scene_;
-  std::uint32_t size_;
+  WorkLog& log_;
   std::unique_ptr<Solver> solver_;
   Places places_;
   bool settled_ = false;
 };
+
+// Input, place, update, encode, send: each stage has a thread of its own but for input and update, which are
+// this one. Ends when it is told to, or when signaling refuses the server.
+void run_pipeline(Light& light, PlaceInbox& inbox, MapSender& sender, const stream::Server& server,
+                  WorkLog& log, Places places, Clock::duration shortest) {
+  while (!inbox.stopped() && server.refused().empty()) {
+    const auto start = Clock::now();
+    sender.wait();
+    const auto news = inbox.take(light.settled() ? 500ms : 0ms);
+    if (news) {
+      log.add("input", Clock::now() - news->came);
+      places = news->places;
+    } else if (light.settled()) {
+      continue;
+    }
+    // After a step one bounce, so that the next step is shown soon; while nothing moves what is left, but no
+    // longer than until somebody moves again.
+    const bool waits = !news.has_value();
+    auto map = light.update(places, [&](std::uint32_t bounces) {
+      return !waits || bounces >= bounces_to_settle || inbox.has_news();
+    });
+    if (map) sender.send(std::move(*map), places);
+    std::this_thread::sleep_until(start + shortest);
+  }
+}
 
 void serve(ServeOptions options) {
   if (!(options.rate > 0 && options.rate <= 1000))
@@ -115,39 +143,26 @@ void serve(ServeOptions options) {
                                      [&] { return inbox.stopped(); });
   scene::check_atlas(scene, options.settings.size);
 
-  RenderLoop loop(scene, device, options);
+  WorkLog log;
+  Light light(scene, device, options, log);
   const Places rest = places_at_rest(scene);
   stream::Server server({.signaling = options.signaling,
                          .token = token,
                          .scene_hash = stream::sha256_of_file(options.scene),
                          .bind_address = options.bind,
                          .places = rest,
-                         .mover = [&scene](std::size_t cube, const Places& places,
-                                           stream::Move move) { return moved(scene, cube, places, move); },
-                         .places_changed = [&inbox](const Places& places) { inbox.put(places); }});
-  Places places = rest;
-  loop.render(
-      places, [](std::uint32_t) { return false; }, server);
+                         .mover =
+                             [&](std::size_t cube, const Places& places, stream::Move move) {
+                               return log.time("place", [&] { return moved(scene, cube, places, move); });
+                             },
+                         .places_changed = [&inbox](const Places& places) { inbox.put(places); },
+                         .work_times = [&log] { return log.times(); }});
+  MapSender sender(server, options.settings.size, log);
+  if (auto map = light.update(rest, [](std::uint32_t) { return false; })) sender.send(std::move(*map), rest);
   spdlog::info("serving {}: --size {} --psf {} on {}", options.scene, options.settings.size,
                options.settings.psf, device.summary().name);
-
-  const std::chrono::duration<double> shortest(1 / options.rate);
-  while (!inbox.stopped() && server.refused().empty()) {
-    const auto start = Clock::now();
-    auto moved = inbox.take(loop.settled() ? 500ms : 0ms);
-    if (moved)
-      places = std::move(*moved);
-    else if (loop.settled())
-      continue;
-    // After a step one bounce, so that the next step is shown soon; while nothing moves what is left, but no
-    // longer than until somebody moves again.
-    const bool waits = !moved.has_value();
-    loop.render(
-        places,
-        [&](std::uint32_t bounces) { return !waits || bounces >= bounces_to_settle || inbox.has_news(); },
-        server);
-    std::this_thread::sleep_until(start + std::chrono::duration_cast<Clock::duration>(shortest));
-  }
+  run_pipeline(light, inbox, sender, server, log, rest,
+               std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(1 / options.rate)));
   if (const auto why = server.refused(); !why.empty()) throw UsageError(why);
   const auto totals = server.statistics();
   spdlog::info("stopped: {} maps and {} MiB sent, {} maps skipped by slow clients, {} messages refused",

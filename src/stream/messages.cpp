@@ -33,6 +33,13 @@ std::string dump(const json& message) {
   return message.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
+json work_of(const std::vector<WorkTime>& times) {
+  json list = json::array();
+  for (const auto& time : times)
+    list.push_back({{"name", time.name}, {"runs", time.runs}, {"seconds", time.seconds}});
+  return list;
+}
+
 }  // namespace
 
 std::optional<Signal> parse_signal(std::string_view text) {
@@ -74,6 +81,10 @@ std::string role_signal(const std::string& id, const Role& role) {
                {"cube", role.cube},
                {"players", role.players},
                {"watchers", role.watchers}});
+}
+
+std::string work_signal(const WorkTimes& times) {
+  return dump({{"type", "work"}, {"stages", work_of(times.stages)}, {"passes", work_of(times.passes)}});
 }
 
 }  // namespace lichtveld::stream

@@ -9,12 +9,14 @@
 //   server -> client   {"id":C,"type":"answer","description":SDP}
 //   server -> client   {"id":C,"type":"candidate","candidate":LINE,"mid":"0"}
 //   server -> client   {"id":C,"type":"role","cube":0|1|2,"players":N,"watchers":M}   0 = watching
+//   server -> relay    {"type":"work","stages":[{"name":"encode","runs":N,"seconds":S},...],"passes":[...]}
 #pragma once
 
 #include <optional>
 #include <string>
 #include <string_view>
 
+#include "lichtveld/stream/server.hpp"
 #include "lichtveld/stream/session.hpp"
 
 namespace lichtveld::stream {
@@ -33,5 +35,6 @@ std::optional<Signal> parse_signal(std::string_view text);
 std::string answer_signal(const std::string& id, const std::string& sdp);
 std::string candidate_signal(const std::string& id, const std::string& line, const std::string& mid);
 std::string role_signal(const std::string& id, const Role& role);
+std::string work_signal(const WorkTimes& times);
 
 }  // namespace lichtveld::stream

@@ -43,6 +43,7 @@ void Outbox::send_map_part() {
   const auto chunk = chunk_at(current_->png, offset_);
   if (chunk.empty()) {
     send_text(std::string(map_complete));
+    counts_.sending += Clock::now() - current_->published;
     current_.reset();
     ++counts_.maps;
     return;

@@ -15,10 +15,12 @@ namespace lichtveld::stream {
 struct Map {
   std::vector<std::uint8_t> png;
   std::string places;  // as sent (protocol.hpp); empty without cubes
+  std::chrono::steady_clock::time_point published = {};
 };
 
 struct SentCounts {
   std::uint64_t maps = 0, skipped = 0, bytes = 0;
+  std::chrono::duration<double> sending{};  // of the maps, each from its publication on
 };
 
 // Sends only while the channel's queue is empty, so that at most one chunk and one places message wait there: a

@@ -47,7 +47,8 @@ void Server::Room::run() {
 
 void Server::Room::publish(std::vector<std::uint8_t> png, const std::vector<Place>& places) {
   if (png.empty()) throw std::invalid_argument("the published map has no bytes");
-  auto map = std::make_shared<const Map>(Map{std::move(png), format_places(places)});
+  auto map =
+      std::make_shared<const Map>(Map{std::move(png), format_places(places), std::chrono::steady_clock::now()});
   asio::post(io_, [this, map = std::move(map)] {
     newest_ = map;
     for (auto& [number, guest] : guests_) {
@@ -82,10 +83,21 @@ void Server::Room::tick() {
     collect(peer);
     if (now - peer.outbox().last_empty() > limits::stall_time) drop(guest, "it takes nothing any more");
   }
+  report();
   tick_.expires_after(limits::places_interval);
   tick_.async_wait([this](boost::system::error_code error) {
     if (!error) tick();
   });
+}
+
+void Server::Room::report() {
+  WorkTimes times;
+  if (options_.work_times) times = options_.work_times();
+  const auto sent = statistics();
+  times.stages.push_back({"send", sent.maps_sent, sent.seconds_sending});
+  if (!sent.signaling_connected || times == reported_) return;
+  reported_ = times;
+  signaling_.send(work_signal(times));
 }
 
 void Server::Room::on_open(Peer& peer) {
@@ -158,6 +170,7 @@ void Server::Room::collect(Peer& peer) {
     s.maps_sent += sent.maps;
     s.maps_skipped += sent.skipped;
     s.bytes_sent += sent.bytes;
+    s.seconds_sending += sent.sending.count();
     s.messages_refused += dropped;
   });
 }

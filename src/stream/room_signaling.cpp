@@ -11,6 +11,7 @@ void Server::Room::signaling_lost() {
   count([](auto& s) { s.signaling_connected = false; });
   // The next connection may give the same ids to others.
   for (auto& [number, guest] : guests_) guest.signaling_id.clear();
+  reported_ = {};
 }
 
 void Server::Room::signal(std::string_view text) {

@@ -134,6 +134,20 @@ test('a room of two players and a watcher', async (t) => {
     }
   });
 
+  await t.test('/metrics shows what each stage of a map and each pass has taken', async () => {
+    const seconds = (text, label, name) =>
+      Number(
+        new RegExp(`^lichtveld_server_${label}_seconds_total\\{${label}="${name}"\\} (.+)$`, 'm').exec(text)?.[1],
+      );
+    const wanted = [
+      ...['input', 'place', 'update', 'encode', 'send'].map((name) => ['stage', name]),
+      ...['emit_links', 'route_links', 'gather', 'tone_map'].map((name) => ['pass', name]),
+    ];
+    const text = await (await fetch(`${url}/metrics`)).text();
+    for (const [label, name] of wanted)
+      assert.ok(seconds(text, label, name) > 0, `${label} ${name} is in\n${text}`);
+  });
+
   await t.test('a watcher cannot move anything, and inherits the cube of a player who leaves', async () => {
     const watcher = await browser.open(url);
     const { role, places } = await watcher.lit();

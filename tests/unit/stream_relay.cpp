@@ -91,10 +91,20 @@ void Relay::deliver(const json& message) {
   Handler handler;
   {
     const std::lock_guard lock(mutex_);
+    if (message.at("type") == "work") {
+      work_ = message.dump();
+      ++reports;
+      return;
+    }
     const auto client = clients_.find(message.at("id").get<int>());
     if (client != clients_.end()) handler = client->second;
   }
   if (handler) handler(message);
+}
+
+json Relay::work() const {
+  const std::lock_guard lock(mutex_);
+  return work_.empty() ? json() : json::parse(work_);
 }
 
 int Relay::attach(Handler handler) {

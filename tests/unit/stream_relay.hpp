@@ -41,7 +41,9 @@ class Relay {
   void freeze(std::shared_future<void> until);
 
   bool connected() const { return connected_; }
-  std::string scene() const;      // the header Lichtveld-Scene of the last accepted server
+  nlohmann::json work() const;  // the newest report of what the server's work has taken; null before the first
+  std::atomic<int> reports{0};  // of that, so far
+  std::string scene() const;    // the header Lichtveld-Scene of the last accepted server
   std::atomic<int> conflicts{0};  // so many servers are told that the room is taken
   std::atomic<int> upgrades{0};   // requests so far
   static constexpr auto token = "the-right-token";
@@ -65,6 +67,7 @@ class Relay {
   std::map<int, Handler> clients_;
   int last_id_ = 0;
   std::string scene_;
+  std::string work_;  // as JSON
   std::jthread thread_;
 };
 

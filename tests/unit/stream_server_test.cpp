@@ -33,6 +33,30 @@ TEST_F(RoomTest, JoinerGetsPlacesAtOnceAndTheWholeMap) {
   EXPECT_GE(statistics.bytes_sent, first.size() + second.size());
 }
 
+TEST_F(RoomTest, WorkIsReportedWhenThereIsMoreOfIt) {
+  auto with_work = options();
+  with_work.work_times = [] {
+    return WorkTimes{.stages = {{"encode", 2, 0.5}}, .passes = {{"gather", 4, 0.25}}};
+  };
+  server = std::make_unique<Server>(std::move(with_work));
+  wait_connected();
+  Client client(*relay);
+  ASSERT_TRUE(client.wait([](const auto& s) { return s.texts.size() >= 1; }));
+  ASSERT_TRUE(eventually([&] { return !relay->work().is_null(); }));
+  const int reports = relay->reports;
+  std::this_thread::sleep_for(1100ms);
+  EXPECT_EQ(relay->reports, reports) << "nothing has been done since";
+
+  server->publish(map_bytes(1000, 1), rest);
+  ASSERT_TRUE(client.wait_maps(1));
+  ASSERT_TRUE(eventually([&] { return relay->work().at("stages").at(1).at("runs") == 1; }));
+  const auto work = relay->work();
+  EXPECT_EQ(work.at("stages").at(0), (nlohmann::json{{"name", "encode"}, {"runs", 2}, {"seconds", 0.5}}));
+  EXPECT_EQ(work.at("stages").at(1).at("name"), "send");
+  EXPECT_GT(work.at("stages").at(1).at("seconds"), 0.0);
+  EXPECT_EQ(work.at("passes"), (nlohmann::json{{{"name", "gather"}, {"runs", 4}, {"seconds", 0.25}}}));
+}
+
 TEST_F(RoomTest, PlacesComeWithoutMapsAtLeastOnceASecond) {
   start();
   Client client(*relay);

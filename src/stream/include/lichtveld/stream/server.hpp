@@ -19,6 +19,20 @@ struct Place {
 
 enum class Move { up, down, left, right };
 
+// What a part of the work has taken since the start; signaling shows it in /metrics.
+struct WorkTime {
+  std::string name;  // lower-case letters and underscores, up to 32
+  std::uint64_t runs = 0;
+  double seconds = 0;  // summed over the runs
+  bool operator==(const WorkTime&) const = default;
+};
+
+// Of the stages that a map goes through, and of the passes of one of them.
+struct WorkTimes {
+  std::vector<WorkTime> stages, passes;
+  bool operator==(const WorkTimes&) const = default;
+};
+
 struct ServerOptions {
   std::string signaling;  // ws://HOST[:PORT]/server
   std::string token;      // the bearer token that signaling asks for: printable ASCII without spaces
@@ -33,6 +47,9 @@ struct ServerOptions {
   std::function<Place(std::size_t cube, const std::vector<Place>& places, Move move)> mover;
   // Called on the server's thread whenever places have changed. Must not block. May be empty.
   std::function<void(const std::vector<Place>& places)> places_changed;
+  // What there is to report besides the stage `send`, which is this server's own: called on the server's thread
+  // once a second. Must not block. May be empty.
+  std::function<WorkTimes()> work_times;
 };
 
 // What /metrics and the log show; counts since the start.
@@ -41,6 +58,7 @@ struct ServerStatistics {
   // Maps sent whole (to the WebRTC library), and maps that a peer was too slow for; a map to two peers counts
   // twice.
   std::uint64_t maps_sent = 0, maps_skipped = 0, bytes_sent = 0;
+  double seconds_sending = 0;                  // of the maps sent, each from publish() on
   std::uint64_t moves = 0, moves_blocked = 0;  // blocked: at a wall or a cube, or asked for by a watcher
   // Messages (of clients and through signaling), channels and offers that were not understood, too long or too
   // many.
