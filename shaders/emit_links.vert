@@ -11,6 +11,9 @@ layout(push_constant) uniform Push { EmitLinksConstants constants; };
 layout(binding = 0) readonly buffer Offsets { vec4 offsets[]; };  // of each body [m]
 layout(binding = 1) readonly buffer Regions { Region regions[]; };
 
+// Of a pixel: Vulkan's usual subPixelPrecisionBits.
+const float SUBPIXELS = 256.0;
+
 layout(location = 0) out vec2 atlas_coordinate;
 layout(location = 1) out float psf_depth;
 out gl_PerVertex {
@@ -23,7 +26,9 @@ void main() {
   const Region region = regions[gl_InstanceIndex];
   atlas_coordinate = atlas;
   psf_depth = dot(region.view.along, p);
-  const vec2 pixel = (vec2(dot(region.view.right, p), dot(region.view.up, p)) * 0.5 + 0.5) * float(constants.size);
+  const vec2 projected = (vec2(dot(region.view.right, p), dot(region.view.up, p)) * 0.5 + 0.5) * float(constants.size);
+  // To where the rasteriser would snap it anyway: so that a region looks the same wherever it lies in the store.
+  const vec2 pixel = round(projected * SUBPIXELS) / SUBPIXELS;
   const vec2 inside = pixel - vec2(region.rect.xy), beyond = vec2(region.rect.zw) - inside;
   gl_ClipDistance[0] = inside.x;
   gl_ClipDistance[1] = inside.y;

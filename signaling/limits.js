@@ -16,8 +16,8 @@ export const defaultLimits = Object.freeze({
   maxMidLength: 16,
   /** Players and watchers that a role message may name. */
   maxPeople: 100_000,
-  /** Stages, and passes, that the render server may report: it has five and about ten. */
-  maxWorkTimes: 32,
+  /** Stages, passes and counts that the render server may report: it has about ten of each. */
+  maxWorkEntries: 32,
 
   /** Messages of a client: a joining browser sends fewer than 40 in one go, then none. */
   clientRate: Object.freeze({ perSecond: 10, burst: 100 }),

@@ -4,11 +4,13 @@
  *   either way       {"id":PEER,"type":"offer"|"answer","description":SDP}
  *                    {"id":PEER,"type":"candidate","candidate":LINE,"mid":MID}
  *   server -> client {"id":PEER,"type":"role","cube":0|1|2,"players":N,"watchers":M}
- *   server -> relay  {"type":"work","stages":[{"name":NAME,"runs":N,"seconds":S},...],"passes":[...]}
+ *   server -> relay  {"type":"work","stages":[{"name":NAME,"runs":N,"seconds":S},...],"passes":[...],
+ *                     "counts":[{"name":NAME,"value":N},...]}
  *                    what the render server's work has taken since its start, shown in /metrics
  *
  * @typedef {{name: string, runs: number, seconds: number}[]} Times
- * @typedef {{type: 'work', stages: Times, passes: Times}} Work
+ * @typedef {{name: string, value: number}[]} Counts
+ * @typedef {{type: 'work', stages: Times, passes: Times, counts: Counts}} Work
  * @typedef {{id: string, type: string} & Record<string, string | number>} Message
  * @typedef {{message: Message} | {work: Work} | {refused: string}} Parsed
  */
@@ -35,26 +37,35 @@ const fieldsOf = {
   },
 };
 
-/** @type {(value: unknown, limits: import('./limits.js').Limits) => Times | undefined} */
-function timesOf(value, { maxWorkTimes }) {
-  if (!Array.isArray(value) || value.length > maxWorkTimes) return undefined;
-  const good = value.every(
-    (time) =>
-      typeof time === 'object' &&
-      time !== null &&
-      typeof time.name === 'string' &&
-      /^[a-z_]{1,32}$/.test(time.name) &&
-      isCount(time.runs, Number.MAX_SAFE_INTEGER) &&
-      Number.isFinite(time.seconds) &&
-      time.seconds >= 0,
-  );
-  return good ? value.map(({ name, runs, seconds }) => ({ name, runs, seconds })) : undefined;
-}
+/** @type {(value: unknown) => boolean} */
+const isAnyCount = (value) => isCount(value, Number.MAX_SAFE_INTEGER);
+
+/** The members of each entry of a report of work, each with its check. */
+const workFields = {
+  stages: { runs: isAnyCount, seconds: (v) => Number.isFinite(v) && v >= 0 },
+  passes: { runs: isAnyCount, seconds: (v) => Number.isFinite(v) && v >= 0 },
+  counts: { value: isAnyCount },
+};
 
 /** @type {(json: Record<string, unknown>, limits: import('./limits.js').Limits) => Parsed} */
-function parseWork(json, limits) {
-  const [stages, passes] = [timesOf(json.stages, limits), timesOf(json.passes, limits)];
-  return stages && passes ? { work: { type: 'work', stages, passes } } : { refused: 'malformed' };
+function parseWork(json, { maxWorkEntries }) {
+  const work = { type: 'work' };
+  for (const [list, fields] of Object.entries(workFields)) {
+    const entries = json[list];
+    if (!Array.isArray(entries) || entries.length > maxWorkEntries) return { refused: 'malformed' };
+    work[list] = [];
+    for (const entry of entries) {
+      if (typeof entry !== 'object' || entry === null) return { refused: 'malformed' };
+      if (typeof entry.name !== 'string' || !/^[a-z_]{1,32}$/.test(entry.name)) return { refused: 'malformed' };
+      const kept = { name: entry.name };
+      for (const [name, accepts] of Object.entries(fields)) {
+        if (!accepts(entry[name])) return { refused: 'malformed' };
+        kept[name] = entry[name];
+      }
+      work[list].push(kept);
+    }
+  }
+  return { work: /** @type {Work} */ (work) };
 }
 
 /**

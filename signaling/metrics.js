@@ -41,12 +41,20 @@ export function createMetrics(room) {
   };
   const showStages = workOf('each stage of a map', 'stage');
   const showPasses = workOf('each pass on the GPU', 'pass');
+  const counted = new Gauge({
+    name: 'lichtveld_server_counted_total',
+    help: "What the render server has counted since its start: maps, moves, links that it looked at again.",
+    labelNames: ['what'],
+    registers,
+  });
   return {
     registry,
     /** What the render server's work has taken; nothing is shown while none is there. */
-    showWork: ({ stages, passes } = { stages: [], passes: [] }) => {
+    showWork: ({ stages, passes, counts } = { stages: [], passes: [], counts: [] }) => {
       showStages(stages);
       showPasses(passes);
+      counted.reset();
+      for (const { name, value } of counts) counted.set({ what: name }, value);
     },
     connections: counter('connections_total', 'Connections accepted, by role.', ['role']),
     refusedConnections: counter('refused_connections_total', 'Connections refused, by reason.', ['reason']),

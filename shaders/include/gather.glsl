@@ -1,7 +1,7 @@
 // One bounce's sum over pairs: w L of what each texel sees, and w. Included by a shader that defines two_links().
 
 layout(local_size_x = TILE) in;
-layout(binding = 1) readonly buffer Radiance { uint radiance[]; };      // packed, of each valid texel, then black
+layout(binding = 1) readonly buffer Radiance { uint radiance[]; };      // of each valid texel, then black
 layout(binding = 2) readonly buffer Directions { vec4 directions[]; };  // xyz; w: solid angle [sr], of each pair
 layout(binding = 3) readonly buffer TexelOf { uint texel_of[]; };
 layout(binding = 4, rgba32f) uniform readonly image2D normal;
@@ -10,9 +10,14 @@ layout(push_constant) uniform Push { GatherConstants constants; };
 
 #include "packed_radiance.glsl"
 
+vec3 radiance_of(uint texel) {
+  if (RADIANCE_WORDS == 1u) return unpack_radiance(radiance[texel]);
+  return uintBitsToFloat(uvec3(radiance[3u * texel], radiance[3u * texel + 1u], radiance[3u * texel + 2u]));
+}
+
 vec4 seen(uint link, float weight) {
   if (link == UNKNOWN(constants.texels)) weight = 0.0;
-  return weight * vec4(unpack_radiance(radiance[min(link, constants.texels)]), 1.0);
+  return weight * vec4(radiance_of(min(link, constants.texels)), 1.0);
 }
 
 void main() {

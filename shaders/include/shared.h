@@ -139,6 +139,11 @@ struct CoverConstants {
   float contact;  // as far above a texel's plane lies on it [m]
 };
 
+struct CheckConstants {
+  uint texels, size;  // of the table; of the atlas, a side
+  uint first_word;    // of the pairs' links in their chunk
+};
+
 struct BounceConstants {
   uint texels;
   float radiance_scale;  // what radiance is multiplied by before it is packed
@@ -149,6 +154,7 @@ struct Counters {
   uint rays, misses;                 // of texels that face the light; those that hit nothing
   uint unknown;                      // rays without a pixel on the texel's side of all walls: left out
   uint overflow_pixels, layers_max;  // PSF pixels with more layers than asked for; most layers in one
+  uint differing;                    // kept links that are not found again
   uint doubts, rest;                 // rays that route_links leaves to route_doubts, and that to route_rest
 };
 

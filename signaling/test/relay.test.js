@@ -30,14 +30,16 @@ test("the render server's work is shown in /metrics while it is there, and nobod
     await client.next();
   };
   const stages = [{ name: 'update', runs: 3, seconds: 0.25, sneaked: 'in' }];
-  server.send({ type: 'work', stages, passes: [{ name: 'gather', runs: 6, seconds: 0.125 }] });
+  const counts = [{ name: 'moves', value: 7 }];
+  server.send({ type: 'work', stages, passes: [{ name: 'gather', runs: 6, seconds: 0.125 }], counts });
   await sync();
   const text = await (await fetch(`${signaling.http}/metrics`)).text();
   assert.match(text, /^lichtveld_server_stage_seconds_total\{stage="update"\} 0.25$/m);
   assert.match(text, /^lichtveld_server_stage_runs_total\{stage="update"\} 3$/m);
   assert.match(text, /^lichtveld_server_pass_seconds_total\{pass="gather"\} 0.125$/m);
+  assert.match(text, /^lichtveld_server_counted_total\{what="moves"\} 7$/m);
 
-  const many = Array.from({ length: defaultLimits.maxWorkTimes + 1 }, () => stages[0]);
+  const many = Array.from({ length: defaultLimits.maxWorkEntries + 1 }, () => stages[0]);
   const malformed = [
     undefined,
     'text',
@@ -50,12 +52,13 @@ test("the render server's work is shown in /metrics while it is there, and nobod
     [{ name: 'update', runs: 1, seconds: -1 }],
     [{ name: 'update', runs: 1, seconds: null }],
   ];
-  for (const bad of malformed) server.send({ type: 'work', stages: bad, passes: [] });
-  client.send({ type: 'work', stages: [], passes: [] });
+  for (const bad of malformed) server.send({ type: 'work', stages: bad, passes: [], counts: [] });
+  server.send({ type: 'work', stages: [], passes: [], counts: [{ name: 'moves', value: -1 }] });
+  client.send({ type: 'work', stages: [], passes: [], counts: [] });
   client.send({ id: serverId, type: 'offer', description: 'v=0' });
   await server.next();
   await sync();
-  assert.equal(await metric(signaling, 'refused_messages_total{reason="malformed"}'), malformed.length);
+  assert.equal(await metric(signaling, 'refused_messages_total{reason="malformed"}'), malformed.length + 1);
   assert.equal(await metric(signaling, 'refused_messages_total{reason="forbidden_type"}'), 1);
   assert.match(
     await (await fetch(`${signaling.http}/metrics`)).text(),

@@ -1,4 +1,5 @@
 #include <chrono>
+#include <type_traits>
 
 #include "bake.hpp"
 #include "files.hpp"
@@ -10,6 +11,17 @@
 namespace lichtveld::commands {
 
 namespace {
+
+// What moves may have made of kept links, by a look at all of them; misses are counted anew with them.
+nlohmann::ordered_json look_again(lightfield::Links& links, const BakeOptions& options,
+                                  lightfield::Solution& solution) {
+  const auto check = links.check(options.settings.psf);
+  solution.misses = check.misses;
+  solution.rays_unknown = check.rays_unknown;
+  return {{"checked", check.links},
+          {"differing", check.differing},
+          {"differing_fraction", static_cast<double>(check.differing) / static_cast<double>(check.links)}};
+}
 
 // solve(light field, offsets) computes the light map that is baked.
 template <typename LightField, typename Solve>
@@ -24,12 +36,17 @@ Baked bake_on(const gpu::Device& device, const BakeOptions& options, const BakeJ
       field.solve(offsets);
     }
   }
-  const auto solution = solve(field, job.moved());
+  auto solution = solve(field, job.moved());
   Baked baked{.irradiance = field.irradiance(), .presented = {}, .report = {}};
   const std::chrono::duration<double, std::milli> total = std::chrono::steady_clock::now() - start;
 
   if (!options.png.empty()) baked.presented = field.presented();
-  baked.report = report(device, options.method, options.settings, solution, field.times(), total.count());
+  const auto times = field.times();
+  nlohmann::ordered_json links;
+  if constexpr (std::is_same_v<LightField, lightfield::Links>)
+    if (options.live) links = look_again(field, options, solution);
+  baked.report = report(device, options.method, options.settings, solution, times, total.count());
+  if (!links.empty()) baked.report["links"] = links;
   check_validation(device);
   return baked;
 }

@@ -111,6 +111,7 @@ void bench(const BenchOptions& options) {
     }
   if (!updates.empty()) {
     write_text(out / "updates.csv", updates_csv(updates));
+    write_text(out / "choices.csv", choices_csv(updates));
     std::printf("\nA light map after each step of the first movable body:\n%s", updates_text(updates).c_str());
   }
   check_validation(device);

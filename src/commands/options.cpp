@@ -19,6 +19,8 @@ const std::map<std::string, Method> methods = {
     {"thesis", Method::thesis}, {"links", Method::links}, {"reference", Method::reference}};
 const std::map<std::string, Sort> sorts = {
     {"bitonic", Sort::bitonic}, {"compare-swap", Sort::compare_swap}, {"scan", Sort::scan}};
+const std::map<std::string, lightfield::Radiance> radiances = {{"packed", lightfield::Radiance::packed},
+                                                               {"full", lightfield::Radiance::full}};
 const std::map<std::string, Weights> all_weights = {{"solid-angle", Weights::solid_angle},
                                                     {"equal", Weights::equal}};
 
@@ -151,6 +153,17 @@ std::optional<std::uint32_t> parse_bounces(const std::string& text) {
   return bounces;
 }
 
+void add_links_options(CLI::App& command, lightfield::Settings& settings) {
+  command
+      .add_option(
+          "--step-bounces", settings.step_bounces,
+          "Of --method links: bounces of the map after a move, 1.., or 0.5: one over half of the directions, "
+          "in turn; what is missing follows with the next maps")
+      ->capture_default_str();
+  add_choice(command, "--radiance", settings.radiance, radiances,
+             "Of --method links: how a bounce reads what texels send: in one word each (RGB9E5), or in three");
+}
+
 void add_bounces_option(CLI::App& command, lightfield::Settings& settings) {
   command
       .add_option_function<std::string>(
@@ -169,6 +182,9 @@ std::string name_of(Method method) {
 }
 std::string name_of(Sort sort) {
   return key_of(sorts, sort);
+}
+std::string name_of(lightfield::Radiance radiance) {
+  return key_of(radiances, radiance);
 }
 std::string name_of(Weights weights) {
   return key_of(all_weights, weights);

@@ -31,6 +31,10 @@ constexpr auto budget_a_map = 33ms;
 // comes between.
 constexpr std::uint32_t bounces_to_settle = 10;
 constexpr std::size_t cubes_of_players = 2;
+// While nothing moves, pairs of directions that are routed again every half second, until all have been.
+constexpr std::uint32_t pairs_a_check = 2;
+// Of the links: a region's clipped edges may be rounded to the other side of a pixel's centre.
+constexpr double most_differing = 1e-3;
 
 struct ServeOptions {
   std::string scene, signaling, token_file, bind;
@@ -96,6 +100,18 @@ class Light {
 
   bool settled() const { return settled_; }
 
+  // Between maps, while nothing moves: whether what is kept is what a fresh build would find.
+  void check() {
+    const auto found = solver_->check_links(pairs_a_check);
+    if (found.links == 0) return;
+    log_.count("links_checked", found.links);
+    log_.count("links_differing", found.differing);
+    log_.set_passes(solver_->times());
+    if (static_cast<double>(found.differing) > most_differing * static_cast<double>(found.links))
+      spdlog::error("{} of {} links are not what a fresh build finds: a bug, please report it with the scene",
+                    found.differing, found.links);
+  }
+
  private:
   const scene::Scene& scene_;
   WorkLog& log_;
@@ -116,6 +132,7 @@ void run_pipeline(Light& light, PlaceInbox& inbox, MapSender& sender, const stre
       log.add("input", Clock::now() - news->came);
       places = news->places;
     } else if (light.settled()) {
+      light.check();
       continue;
     }
     // After a step one bounce, so that the next step is shown soon; while nothing moves what is left, but no
@@ -156,7 +173,7 @@ void serve(ServeOptions options) {
                                return log.time("place", [&] { return moved(scene, cube, places, move); });
                              },
                          .places_changed = [&inbox](const Places& places) { inbox.put(places); },
-                         .work_times = [&log] { return log.times(); }});
+                         .work = [&log] { return log.work(); }});
   MapSender sender(server, options.settings.size, log);
   if (auto map = light.update(rest, [](std::uint32_t) { return false; })) sender.send(std::move(*map), rest);
   spdlog::info("serving {}: --size {} --psf {} on {}", options.scene, options.settings.size,
@@ -188,6 +205,7 @@ void add_serve(CLI::App& application) {
   add_bounces_option(*command, options->settings);
   add_method_option(*command, options->method, {Method::links, Method::thesis});
   add_light_field_options(*command, options->settings);
+  add_links_options(*command, options->settings);
   add_device_options(*command, options->device);
   command->callback([options, command] {
     choose_method(*command, options->method);

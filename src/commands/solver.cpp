@@ -1,6 +1,5 @@
 #include "solver.hpp"
 
-#include "lichtveld/lightfield/links.hpp"
 #include "lichtveld/lightfield/thesis.hpp"
 
 namespace lichtveld::commands {
@@ -28,6 +27,7 @@ class LinksSolver : public SolverOf<lightfield::Links> {
   lightfield::Solution update(const std::vector<glm::vec3>& offsets, const Enough& enough) override {
     return method_.update(offsets, enough);
   }
+  lightfield::LinkCheck check_links(std::uint32_t pairs) override { return method_.check(pairs); }
 };
 
 }  // namespace

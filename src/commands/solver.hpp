@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "lichtveld/gpu/frame.hpp"
+#include "lichtveld/lightfield/links.hpp"
 #include "options.hpp"
 
 namespace lichtveld::commands {
@@ -23,6 +24,9 @@ class Solver {
   virtual lightfield::Solution update(const std::vector<glm::vec3>& offsets, const Enough&) {
     return solve(offsets);
   }
+
+  // As Links::check(); nothing where no links are kept.
+  virtual lightfield::LinkCheck check_links(std::uint32_t) { return {}; }
 
   virtual std::vector<glm::vec4> irradiance() = 0;    // after solve()
   virtual std::vector<std::uint8_t> presented() = 0;  // the same, tone-mapped: sRGB RGBA

@@ -24,6 +24,21 @@ constexpr std::uint64_t seed_of_truth = 1;
 // The thesis computes everything afresh, and so takes as long for any step: for seconds each.
 constexpr std::size_t steps_of_thesis = 3;
 
+// What links leaves to choose.
+struct Choice {
+  std::string options;
+  void (*make)(lightfield::Settings&);
+};
+const std::array<Choice, 3> choices = {{
+    {"--step-bounces 1", [](lightfield::Settings& settings) { settings.step_bounces = 1; }},
+    {"--step-bounces 2", [](lightfield::Settings& settings) { settings.step_bounces = 2; }},
+    {"--radiance full", [](lightfield::Settings& settings) { settings.radiance = lightfield::Radiance::full; }},
+}};
+
+std::string known(double value) {
+  return std::isfinite(value) ? fmt::format("{:.6g}", value) : "";
+}
+
 // As serve has it while things move: the light of further bounces follows in the next steps.
 bool after_one_bounce(std::uint32_t) {
   return true;
@@ -96,15 +111,21 @@ std::vector<UpdateRow> time_updates(const gpu::Device& device, const scene::Scen
                             .spp = options.truth_spp,
                             .seed = seed_of_truth});
     double of_thesis = not_known;
-    for (const auto method : device_methods()) {
-      auto row = run_walk(device, scene, {.scene = name, .method = method, .settings = settings}, places,
-                          truth ? &*truth : nullptr);
+    const auto run = [&](UpdateRow row) {
+      row.scene = name;
+      row = run_walk(device, scene, std::move(row), places, truth ? &*truth : nullptr);
       const double p50 = median(row.ms);
-      if (method == Method::thesis) of_thesis = p50;
+      if (row.method == Method::thesis) of_thesis = p50;
       row.speedup_vs_thesis = of_thesis / p50;
-      spdlog::info("{} {} size {} psf {}: {} updates, {:.0f} ms each", name, name_of(method), settings.size,
-                   settings.psf, row.ms.size(), p50);
+      spdlog::info("{} {} {} size {} psf {}: {} updates, {:.0f} ms each", name, name_of(row.method), row.choice,
+                   settings.size, settings.psf, row.ms.size(), p50);
       rows.push_back(std::move(row));
+    };
+    for (const auto method : device_methods()) run({.scene = {}, .method = method, .settings = settings});
+    for (const auto& choice : choices) {
+      auto changed = settings;
+      choice.make(changed);
+      run({.scene = {}, .method = Method::links, .settings = changed, .choice = choice.options});
     }
   }
   return rows;
@@ -113,11 +134,20 @@ std::vector<UpdateRow> time_updates(const gpu::Device& device, const scene::Scen
 std::string updates_csv(const std::vector<UpdateRow>& rows) {
   std::string csv = "method,size,psf,ms_p50,ms_p95,speedup_vs_thesis,rel_rmse,scene,steps,rel_rmse_moving\n";
   for (const auto& row : rows)
-    csv += fmt::format("{},{},{},{:.4f},{:.4f},{:.3f},{},{},{},{}\n", name_of(row.method), row.settings.size,
-                       row.settings.psf, median(row.ms), percentile(row.ms, 0.95), row.speedup_vs_thesis,
-                       std::isfinite(row.rel_rmse) ? fmt::format("{:.6g}", row.rel_rmse) : "",
-                       csv_cell(row.scene), row.ms.size(),
-                       std::isfinite(row.rel_rmse_moving) ? fmt::format("{:.6g}", row.rel_rmse_moving) : "");
+    if (row.choice.empty())
+      csv += fmt::format("{},{},{},{:.4f},{:.4f},{:.3f},{},{},{},{}\n", name_of(row.method), row.settings.size,
+                         row.settings.psf, median(row.ms), percentile(row.ms, 0.95), row.speedup_vs_thesis,
+                         known(row.rel_rmse), csv_cell(row.scene), row.ms.size(), known(row.rel_rmse_moving));
+  return csv;
+}
+
+std::string choices_csv(const std::vector<UpdateRow>& rows) {
+  std::string csv = "scene,size,psf,choice,ms_p50,ms_p95,rel_rmse,rel_rmse_moving\n";
+  for (const auto& row : rows)
+    if (row.method == Method::links)
+      csv += fmt::format("{},{},{},{},{:.4f},{:.4f},{},{}\n", csv_cell(row.scene), row.settings.size,
+                         row.settings.psf, row.choice.empty() ? "default" : row.choice, median(row.ms),
+                         percentile(row.ms, 0.95), known(row.rel_rmse), known(row.rel_rmse_moving));
   return csv;
 }
 
@@ -127,11 +157,13 @@ std::string updates_text(const std::vector<UpdateRow>& rows) {
     text += fmt::format(
         "  {:<12} {:<8} --size {:<4} --psf {:<5} median {:9.1f} ms, 95 % below {:9.1f} ms, {:5.2f} "
         "times as fast as thesis",
-        row.scene, name_of(row.method), row.settings.size, row.settings.psf, median(row.ms),
-        percentile(row.ms, 0.95), row.speedup_vs_thesis);
+        row.scene, name_of(row.method) + (row.choice.empty() ? "" : " " + row.choice), row.settings.size,
+        row.settings.psf, median(row.ms), percentile(row.ms, 0.95), row.speedup_vs_thesis);
     if (std::isfinite(row.rel_rmse))
       text += fmt::format(", rel_rmse {:.2f} % (reference's noise {:.2f} %)", 100 * row.rel_rmse,
                           100 * row.noise_of_truth);
+    if (std::isfinite(row.rel_rmse_moving))
+      text += fmt::format(", {:.2f} % while moving", 100 * row.rel_rmse_moving);
     text += "\n   ";
     for (const auto& [name, time] : row.passes)
       text += fmt::format(" {} {:.1f}", name, time.gpu_ms / static_cast<double>(row.ms.size()));

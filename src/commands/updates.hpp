@@ -20,6 +20,7 @@ struct UpdateRow {
   std::string scene;
   Method method;
   lightfield::Settings settings;
+  std::string choice = {};             // what differs from how links is run otherwise: options; empty: nothing
   std::vector<double> ms = {};         // of each step's light map
   gpu::PassTimes passes = {};          // of all steps together
   double rel_rmse_moving = not_known;  // of the last step's, before it has settled
@@ -32,13 +33,17 @@ struct UpdateRow {
 // turning where it is blocked. Nothing if no body is movable or the first one has no way to go.
 std::vector<std::vector<glm::vec3>> walk(const scene::Scene& scene, std::uint32_t steps);
 
-// Nothing, and a warning, for a scene in which nobody can walk.
+// Each method, and after links the same once for each choice that it leaves. Nothing, and a warning, for a
+// scene in which nobody can walk.
 std::vector<UpdateRow> time_updates(const gpu::Device& device, const scene::Scene& scene,
                                     const std::string& name, const UpdateOptions& options,
                                     const ReferenceCache& cache);
 
 // method, size, psf, ms_p50, ms_p95, speedup_vs_thesis, rel_rmse, scene, steps, rel_rmse_moving
 std::string updates_csv(const std::vector<UpdateRow>& rows);
+
+// What each choice saves and costs: scene, size, psf, choice, ms_p50, ms_p95, rel_rmse, rel_rmse_moving
+std::string choices_csv(const std::vector<UpdateRow>& rows);
 
 // The same to read, a line a row.
 std::string updates_text(const std::vector<UpdateRow>& rows);

@@ -41,12 +41,18 @@ class WorkLog {
     passes_ = passes;
   }
 
-  stream::WorkTimes times() const {
+  void count(const std::string& what, std::uint64_t many) {
     const std::lock_guard lock(mutex_);
-    stream::WorkTimes times;
-    for (const auto& [name, time] : stages_) times.stages.push_back({name, time.runs, time.seconds});
-    for (const auto& [name, time] : passes_) times.passes.push_back({name, time.calls, time.gpu_ms / 1000});
-    return times;
+    counts_[what] += many;
+  }
+
+  stream::Work work() const {
+    const std::lock_guard lock(mutex_);
+    stream::Work work;
+    for (const auto& [name, time] : stages_) work.stages.push_back({name, time.runs, time.seconds});
+    for (const auto& [name, time] : passes_) work.passes.push_back({name, time.calls, time.gpu_ms / 1000});
+    for (const auto& [name, value] : counts_) work.counts.push_back({name, value});
+    return work;
   }
 
  private:
@@ -57,6 +63,7 @@ class WorkLog {
   mutable std::mutex mutex_;
   std::map<std::string, Time> stages_;
   gpu::PassTimes passes_;
+  std::map<std::string, std::uint64_t> counts_;
 };
 
 }  // namespace lichtveld::commands

@@ -25,22 +25,29 @@ std::vector<glm::vec4> pair_directions(const std::vector<Direction>& directions)
   return pairs;
 }
 
+std::uint32_t words_of(Radiance radiance) {
+  return radiance == Radiance::packed ? 1 : 3;
+}
+
 }  // namespace
 
 Gather::Gather(const gpu::Device& device, const LinkTable& table, const std::vector<Direction>& directions,
-               float scale)
+               Radiance radiance, float scale)
     : pairs_(static_cast<std::uint32_t>(directions.size() / 2)),
       scale_(scale),
       gather_(device, "gather", table.bits == 16 ? gpu::Spirv(gather_16_comp) : gpu::Spirv(gather_32_comp),
               {.kinds = {Kind::storage_buffer, Kind::storage_buffer, Kind::storage_buffer, Kind::storage_buffer,
                          Kind::storage_image, Kind::storage_buffer},
-               .push_bytes = sizeof(shaders::GatherConstants)}),
+               .push_bytes = sizeof(shaders::GatherConstants),
+               .specialisation = {words_of(radiance)}}),
       end_(device, "gather", link_bounce_comp,
            {.kinds = {Kind::storage_buffer, Kind::storage_buffer, Kind::storage_buffer, Kind::storage_image,
                       Kind::storage_image, Kind::storage_image, Kind::storage_image, Kind::storage_buffer,
                       Kind::storage_buffer},
-            .push_bytes = sizeof(shaders::BounceConstants)}),
-      radiance_(storage(device, "lightfield/packed_radiance", (table.texels + 1) * sizeof(std::uint32_t))),
+            .push_bytes = sizeof(shaders::BounceConstants),
+            .specialisation = {words_of(radiance)}}),
+      radiance_(storage(device, "lightfield/link_radiance",
+                        vk::DeviceSize{words_of(radiance)} * (table.texels + 1) * sizeof(std::uint32_t))),
       directions_(gpu::upload<glm::vec4>(device, "lightfield/pair_directions", pair_directions(directions),
                                          vk::BufferUsageFlagBits::eStorageBuffer)),
       sums_{storage(device, "lightfield/sums 0", table.texels * sizeof(glm::vec4)),

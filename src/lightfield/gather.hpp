@@ -8,6 +8,7 @@
 #include <initializer_list>
 
 #include "lichtveld/lightfield/directions.hpp"
+#include "lichtveld/lightfield/settings.hpp"
 #include "link_table.hpp"
 
 namespace lichtveld::lightfield {
@@ -16,7 +17,7 @@ class Gather {
  public:
   // `scale`: what radiance is multiplied by to fit its packing.
   Gather(const gpu::Device& device, const LinkTable& table, const std::vector<Direction>& directions,
-         float scale);
+         Radiance radiance, float scale);
 
   // L = Le: no bounce yet.
   void start(gpu::Frame& frame, const LightMap& map, const LinkTable& table) const;
@@ -39,7 +40,7 @@ class Gather {
   std::uint32_t pairs_;
   float scale_;
   gpu::ComputePipeline gather_, end_;
-  gpu::Buffer radiance_;             // packed; the one after the last texel stays black
+  gpu::Buffer radiance_;             // one or three words a texel; the one after the last texel stays black
   gpu::Buffer directions_;           // vec4 a pair
   std::array<gpu::Buffer, 2> sums_;  // of each half of the directions
   gpu::Buffer changes_;              // vec2 a workgroup, host-visible

@@ -93,10 +93,15 @@ LinkTable::LinkTable(const gpu::Device& device, const scene::Scene& scene, const
   number = numbers(device, map, valid);
   for (std::uint32_t first = 0; first < pairs; first += static_cast<std::uint32_t>(fit)) {
     const auto count = std::min(static_cast<std::uint32_t>(fit), pairs - first);
-    chunks.push_back({first, count,
-                      gpu::Buffer(device, "lightfield/links " + std::to_string(chunks.size()), a_pair * count,
-                                  vk::BufferUsageFlagBits::eStorageBuffer)});
+    chunks.push_back(make_chunk(device, "lightfield/links " + std::to_string(chunks.size()), first, count));
   }
+}
+
+LinkTable::Chunk LinkTable::make_chunk(const gpu::Device& device, const std::string& name,
+                                       std::uint32_t first_pair, std::uint32_t pairs) const {
+  return {first_pair, pairs,
+          gpu::Buffer(device, name, std::uint64_t{texels} * bits / 8 * pairs,
+                      vk::BufferUsageFlagBits::eStorageBuffer)};
 }
 
 TileBoxes LinkTable::boxes(const std::vector<glm::vec3>& offsets) const {

@@ -3,6 +3,7 @@
 // tile of consecutive numbers lies together on a surface.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "lichtveld/scene/scene.hpp"
@@ -34,6 +35,9 @@ struct LinkTable {
     std::uint32_t first_pair, pairs;
     gpu::Buffer links;
   };
+
+  Chunk make_chunk(const gpu::Device& device, const std::string& name, std::uint32_t first_pair,
+                   std::uint32_t pairs) const;
 
   std::uint32_t texels = 0;  // valid ones
   std::uint32_t bits = 16;   // of a link

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "brdf.hpp"
@@ -83,7 +84,8 @@ struct Links::Parts {
     find_sources();
     brightest_of_scene = brightest(device, map);
     table = std::make_unique<LinkTable>(device, scene, map, pairs());
-    gather = std::make_unique<Gather>(device, *table, psfs, radiance_scale(brightest_of_scene));
+    gather =
+        std::make_unique<Gather>(device, *table, psfs, settings.radiance, radiance_scale(brightest_of_scene));
     layered = std::make_unique<Layered>(device, settings, *table, capacity_for(settings.layers));
   }
 
@@ -101,11 +103,13 @@ struct Links::Parts {
   std::unique_ptr<LinkTable> table;
   std::unique_ptr<Gather> gather;
   std::unique_ptr<Layered> layered;
-  std::vector<glm::vec3> offsets;  // of the bodies as they are linked; empty before the first time
-  bool lit = false;                // there is light to start from
-  bool stepped = false;            // the links have changed since the last bounce
-  std::uint32_t next_half = 0;     // of the directions
-  Solution solution;               // of the last solve or update
+  std::optional<LinkTable::Chunk> again;  // links of two pairs, to compare
+  std::vector<glm::vec3> offsets;         // of the bodies as they are linked; empty before the first time
+  bool lit = false;                       // there is light to start from
+  bool stepped = false;                   // the links have changed since the last bounce
+  std::uint32_t next_half = 0;            // of the directions
+  Solution solution;                      // of the last solve or update
+  std::uint32_t checked = 0;              // pairs, since the last move
 
   std::uint32_t pairs() const { return settings.psf / 2; }
   std::vector<glm::vec3> at_rest() const { return std::vector(geometry.scene.bodies.size(), glm::vec3(0)); }
@@ -117,6 +121,7 @@ struct Links::Parts {
   std::vector<std::uint32_t> in_contact(const std::vector<glm::vec3>& to, bool all,
                                         const TileBoxes& tiles) const;
   void find_cover(const std::vector<std::uint32_t>& groups);
+  LinkCheck check_two();
   void start();
   void bounce();
   void half_bounce();
@@ -153,6 +158,18 @@ Solution Links::update(const std::vector<glm::vec3>& offsets,
   parts.converge(enough);
   parts.present();
   return solution;
+}
+
+LinkCheck Links::check(std::uint32_t pairs) {
+  LinkCheck all;
+  for (std::uint32_t done = 0; done < pairs && parts_->checked < parts_->pairs(); done += 2) {
+    const auto two = parts_->check_two();
+    all.links += two.links;
+    all.differing += two.differing;
+    all.misses += two.misses;
+    all.rays_unknown += two.rays_unknown;
+  }
+  return all;
 }
 
 std::vector<glm::vec4> Links::irradiance() {
@@ -201,6 +218,7 @@ void Links::Parts::link(const std::vector<glm::vec3>& to) {
   route(parts, tiles);
   find_cover(groups);
   stepped = true;
+  checked = 0;
   offsets = to;
 }
 
@@ -254,8 +272,8 @@ void Links::Parts::route(const std::vector<Part>& parts, const TileBoxes& tiles)
     gpu::Frame frame(device, times);
     if (!placed) layered->route.read_receivers(frame, map, *table);
     placed = true;
-    layered->route.record(frame, batches[batch], geometry, map, *table, layered->store, pixels, settings.layers,
-                          counters);
+    layered->route.record(frame, batches[batch], geometry, map, *table, table->chunks, layered->store, pixels,
+                          settings.layers, counters);
     frame.to_host(counters);
     frame.submit_and_wait();
     solution.overflow_pixels += counted.overflow_pixels;
@@ -281,6 +299,37 @@ void Links::Parts::route(const std::vector<Part>& parts, const TileBoxes& tiles)
   }
 }
 
+// The next two pairs, which is as few as a word of the table holds.
+LinkCheck Links::Parts::check_two() {
+  const auto pixels = settings.raster(), first = checked;
+  if (!again) again = table->make_chunk(device, "lightfield/links again", 0, 2);
+  again->first_pair = first;
+  const auto chunk = std::find_if(table->chunks.begin(), table->chunks.end(),
+                                  [&](const auto& c) { return first < c.first_pair + c.pairs; });
+  std::vector<Part> parts;
+  for (const auto pair : {first, first + 1})
+    parts.push_back(whole(psf_view(psfs[pair], geometry.sphere, pixels), pair, pixels));
+  auto& counted = counters.as<shaders::Counters>().front();
+  counted = {};
+  for (const auto& batch : pack(parts, layered->store.extent, table->boxes(offsets))) {
+    gpu::Frame frame(device, times);
+    counted.doubts = counted.rest = 0;
+    layered->route.record(frame, batch, geometry, map, *table, {&*again, 1}, layered->store, pixels,
+                          settings.layers, counters);
+    frame.to_host(counters);
+    frame.submit_and_wait();
+  }
+  gpu::Frame frame(device, times);
+  layered->route.compare(frame, *table, *chunk, first, *again, counters);
+  frame.to_host(counters);
+  frame.submit_and_wait();
+  checked += 2;
+  return {.links = 2 * std::uint64_t{table->texels},
+          .differing = counted.differing,
+          .misses = counted.misses,
+          .rays_unknown = counted.unknown};
+}
+
 void Links::Parts::find_cover(const std::vector<std::uint32_t>& groups) {
   gpu::Frame frame(device, times);
   layered->route.find_cover(frame, geometry, map, *table, gather->directions(), settings.raster(), groups);
@@ -303,8 +352,8 @@ void Links::Parts::bounce() {
   solution.residual = bound_on_missing(change.most, brightest_of_scene.albedo, change.mean);
 }
 
-// What serve shows while things move: a bounce over every other direction costs half, and leaves of the other half the
-// light of one step ago. It says nothing about what is missing.
+// What serve shows while things move: a bounce over every other direction costs half, and leaves of the other
+// half the light of one step ago. It says nothing about what is missing.
 void Links::Parts::half_bounce() {
   gpu::Frame frame(device, times);
   gather->bounce(frame, map, *table, {next_half});

@@ -7,6 +7,7 @@
 #include "shaders/emit_links.frag.h"
 #include "shaders/emit_links.vert.h"
 #include "shaders/emit_links_count.comp.h"
+#include "shaders/link_check.comp.h"
 #include "shaders/link_cover.comp.h"
 #include "shaders/receivers.comp.h"
 #include "shaders/route_doubts.comp.h"
@@ -104,6 +105,10 @@ RouteLinks::RouteLinks(const gpu::Device& device, const LinkStore& store, const 
                         Kind::storage_image, Kind::storage_buffer},
               .push_bytes = sizeof(shaders::CoverConstants),
               .specialisation = {table.bits}}),
+      check_(device, "link_check", link_check_comp,
+             {.kinds = std::vector(4, Kind::storage_buffer),
+              .push_bytes = sizeof(shaders::CheckConstants),
+              .specialisation = {table.bits}}),
       receivers_(device, "lightfield/receivers", table.texels * sizeof(shaders::Receiver),
                  vk::BufferUsageFlagBits::eStorageBuffer),
       positions_(device, "lightfield/positions", table.texels * sizeof(glm::vec4),
@@ -147,9 +152,21 @@ void RouteLinks::find_cover(gpu::Frame& frame, const Geometry& geometry, const L
                 static_cast<std::uint32_t>(groups.size()), 1);
 }
 
+void RouteLinks::compare(gpu::Frame& frame, const LinkTable& table, const LinkTable::Chunk& chunk,
+                         std::uint32_t pair, const LinkTable::Chunk& again, const gpu::Buffer& counters) const {
+  const std::uint32_t first_word = (pair - chunk.first_pair) * table.texels / (32 / table.bits);
+  frame.compute(
+      check_,
+      {gpu::reads(chunk.links), gpu::reads(again.links), gpu::writes(counters), gpu::reads(table.texel_of)},
+      shaders::CheckConstants{
+          .texels = table.texels, .size = table.number.extent().width, .first_word = first_word},
+      many_groups, 1);
+}
+
 void RouteLinks::record(gpu::Frame& frame, const RegionBatch& batch, const Geometry& geometry,
-                        const LightMap& map, const LinkTable& table, const LinkStore& store,
-                        std::uint32_t pixels, std::uint32_t limit, const gpu::Buffer& counters) {
+                        const LightMap& map, const LinkTable& table, std::span<const LinkTable::Chunk> chunks,
+                        const LinkStore& store, std::uint32_t pixels, std::uint32_t limit,
+                        const gpu::Buffer& counters) {
   put(device_, regions_, batch.regions);
   put(device_, jobs_, batch.jobs);
   put(device_, tiles_, batch.tiles);
@@ -192,7 +209,7 @@ void RouteLinks::record(gpu::Frame& frame, const RegionBatch& batch, const Geome
   // Jobs stand in the order of their pairs, and so of the table's chunks.
   std::vector<const LinkTable::Chunk*> touched;
   auto first = batch.jobs.begin();
-  for (const auto& chunk : table.chunks) {
+  for (const auto& chunk : chunks) {
     const auto end = std::find_if(first, batch.jobs.end(), [&](const shaders::RouteJob& job) {
       return static_cast<std::uint32_t>(batch.regions[job.region].place.z) >= chunk.first_pair + chunk.pairs;
     });
@@ -202,7 +219,7 @@ void RouteLinks::record(gpu::Frame& frame, const RegionBatch& batch, const Geome
     touched.push_back(&chunk);
     first = end;
   }
-  look(route_doubts_, table.chunks.front(), 0, many_groups);
+  look(route_doubts_, chunks.front(), 0, many_groups);
   for (const auto* chunk : touched) look(route_rest_, *chunk, 0, many_groups);
 }
 

@@ -5,6 +5,8 @@
 // the geometry; writes the link table. Costs pixels of the parts times layers, and texels of the tiles.
 #pragma once
 
+#include <span>
+
 #include "link_regions.hpp"
 #include "link_table.hpp"
 
@@ -34,16 +36,21 @@ class RouteLinks {
                   const gpu::Buffer& directions, std::uint32_t pixels,
                   const std::vector<std::uint32_t>& groups);
 
-  // Records one batch into the frame; its regions and jobs stay on the device until the next. `limit` layers
-  // are asked for; pixels with more, misses and unknown rays are added to `counters`.
+  // Counts into `counters` how many of a chunk's links of two pairs, from `pair` on, are others in `again`.
+  void compare(gpu::Frame& frame, const LinkTable& table, const LinkTable::Chunk& chunk, std::uint32_t pair,
+               const LinkTable::Chunk& again, const gpu::Buffer& counters) const;
+
+  // Records one batch into the frame, whose links go to the chunks of their pairs; its regions and jobs stay on
+  // the device until the next. `limit` layers are asked for; pixels with more, misses and unknown rays are
+  // added to `counters`.
   void record(gpu::Frame& frame, const RegionBatch& batch, const Geometry& geometry, const LightMap& map,
-              const LinkTable& table, const LinkStore& store, std::uint32_t pixels, std::uint32_t limit,
-              const gpu::Buffer& counters);
+              const LinkTable& table, std::span<const LinkTable::Chunk> chunks, const LinkStore& store,
+              std::uint32_t pixels, std::uint32_t limit, const gpu::Buffer& counters);
 
  private:
   const gpu::Device& device_;
   std::vector<gpu::GraphicsPipeline> draw_;  // one-sided, double-sided
-  gpu::ComputePipeline count_, route_, route_doubts_, route_rest_, receive_, cover_;
+  gpu::ComputePipeline count_, route_, route_doubts_, route_rest_, receive_, cover_, check_;
   gpu::Buffer receivers_, positions_;            // of each valid texel
   gpu::Buffer regions_, jobs_, tiles_, groups_;  // host-visible
   gpu::Buffer doubts_, rest_;                    // rays that are not done with

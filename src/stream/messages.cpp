@@ -83,8 +83,13 @@ std::string role_signal(const std::string& id, const Role& role) {
                {"watchers", role.watchers}});
 }
 
-std::string work_signal(const WorkTimes& times) {
-  return dump({{"type", "work"}, {"stages", work_of(times.stages)}, {"passes", work_of(times.passes)}});
+std::string work_signal(const Work& work) {
+  json counts = json::array();
+  for (const auto& count : work.counts) counts.push_back({{"name", count.name}, {"value", count.value}});
+  return dump({{"type", "work"},
+               {"stages", work_of(work.stages)},
+               {"passes", work_of(work.passes)},
+               {"counts", counts}});
 }
 
 }  // namespace lichtveld::stream

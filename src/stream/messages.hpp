@@ -9,7 +9,8 @@
 //   server -> client   {"id":C,"type":"answer","description":SDP}
 //   server -> client   {"id":C,"type":"candidate","candidate":LINE,"mid":"0"}
 //   server -> client   {"id":C,"type":"role","cube":0|1|2,"players":N,"watchers":M}   0 = watching
-//   server -> relay    {"type":"work","stages":[{"name":"encode","runs":N,"seconds":S},...],"passes":[...]}
+//   server -> relay    {"type":"work","stages":[{"name":"encode","runs":N,"seconds":S},...],"passes":[...],
+//                       "counts":[{"name":"moves","value":N},...]}
 #pragma once
 
 #include <optional>
@@ -35,6 +36,6 @@ std::optional<Signal> parse_signal(std::string_view text);
 std::string answer_signal(const std::string& id, const std::string& sdp);
 std::string candidate_signal(const std::string& id, const std::string& line, const std::string& mid);
 std::string role_signal(const std::string& id, const Role& role);
-std::string work_signal(const WorkTimes& times);
+std::string work_signal(const Work& work);
 
 }  // namespace lichtveld::stream

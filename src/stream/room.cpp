@@ -91,13 +91,19 @@ void Server::Room::tick() {
 }
 
 void Server::Room::report() {
-  WorkTimes times;
-  if (options_.work_times) times = options_.work_times();
-  const auto sent = statistics();
-  times.stages.push_back({"send", sent.maps_sent, sent.seconds_sending});
-  if (!sent.signaling_connected || times == reported_) return;
-  reported_ = times;
-  signaling_.send(work_signal(times));
+  Work work;
+  if (options_.work) work = options_.work();
+  const auto now = statistics();
+  work.stages.push_back({"send", now.maps_sent, now.seconds_sending});
+  for (const auto& [name, value] : {std::pair("maps_sent", now.maps_sent),
+                                    {"maps_skipped", now.maps_skipped},
+                                    {"moves", now.moves},
+                                    {"moves_blocked", now.moves_blocked},
+                                    {"messages_refused", now.messages_refused}})
+    work.counts.push_back({name, value});
+  if (!now.signaling_connected || work == reported_) return;
+  reported_ = work;
+  signaling_.send(work_signal(work));
 }
 
 void Server::Room::on_open(Peer& peer) {

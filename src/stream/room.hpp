@@ -79,7 +79,7 @@ struct Server::Room final : PeerListener {
   TokenBucket offers_{limits::offers_per_second, limits::offers_burst};
   TokenBucket log_{limits::log_lines_per_second, limits::log_lines_burst};
   boost::asio::steady_timer tick_{io_};
-  WorkTimes reported_;  // in the present connection to signaling
+  Work reported_;  // in the present connection to signaling
   Signaling signaling_;
 
   mutable std::mutex mutex_;  // guards the two below

@@ -54,6 +54,16 @@ INSTANTIATE_TEST_SUITE_P(
                    " --signaling ws://127.0.0.1:1/server --token-file nowhere",
                2,
                {"--abuffer", "links"}},
+        BadUse{"StepBounces",
+               "serve --step-bounces 0.7 --scene " + cornell +
+                   " --signaling ws://127.0.0.1:1/server --token-file nowhere",
+               2,
+               {"0.7", "0.5", "whole"}},
+        BadUse{"Radiance",
+               "serve --radiance thick --scene " + cornell +
+                   " --signaling ws://127.0.0.1:1/server --token-file nowhere",
+               2,
+               {"thick", "full|packed"}},
         BadUse{"ServeReference",
                "serve --method reference --scene " + cornell +
                    " --signaling ws://127.0.0.1:1/server --token-file nowhere",

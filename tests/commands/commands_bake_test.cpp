@@ -139,8 +139,13 @@ TEST(Links, ThatDoNotFitAreRefusedBeforeTheyAreMade) {
 
 TEST_F(Bake, LiveMovesEndWhereAFreshBakeDoes) {
   const std::string moves = "--move cube1=-0.4,0.3,0 --move cube2=0.2,0,0.1 --move cube1=0.1,0,0";
-  const auto fresh = bake("fresh.exr", moves), live = bake("live.exr", moves + " --live"),
-             rest = bake("rest.exr");
+  const auto fresh = bake("fresh.exr", moves),
+             live = bake("live.exr", moves + " --live --report " + path("r.json")), rest = bake("rest.exr");
+  const auto report = json::parse(std::ifstream(path("r.json")));
+  if (report["method"] == "links") {
+    EXPECT_EQ(report["links"]["checked"], report["texels_valid"].get<int>() * report["psf"].get<int>() / 2);
+    EXPECT_LT(report["links"]["differing_fraction"], 1e-4);
+  }
   EXPECT_EQ(fresh, live);
   EXPECT_NE(fresh, rest);
   EXPECT_EQ(fresh, bake("sum.exr", "--move cube1=-0.3,0.3,0 --move cube2=0.2,0,0.1"));

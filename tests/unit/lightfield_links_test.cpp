@@ -114,15 +114,70 @@ TEST_F(Moves, ManyMovesLeaveNoTrace) {
   links.solve(offsets);
   std::mt19937 random(1);
   const auto step = [&] { return 0.3f * (static_cast<float>(random() % 1001) / 500 - 1); };
-  for (int move = 0; move < 150; ++move) {
+  for (int move = 0; move < 1000; ++move) {
     const auto body = 1 + random() % 2;
     offsets[body] = glm::clamp(offsets[body] + glm::vec3(step(), step(), step()), -1.0f, 1.0f);
     links.update(offsets, [](std::uint32_t) { return true; });
   }
   links.solve(offsets);
   EXPECT_LT(rel_rmse(links.irradiance(), fresh(scene_, settings_, offsets)), 2e-3);
+  const auto check = links.check(settings_.psf);
+  EXPECT_GT(check.links, 0u);
+  EXPECT_LE(static_cast<double>(check.differing), 1e-4 * static_cast<double>(check.links));
   links.solve(at_rest(scene_));
   EXPECT_LT(rel_rmse(links.irradiance(), fresh(scene_, settings_)), 2e-3);
+}
+
+// Kept links are compared with what is found now, pair by pair, until all have been; a move starts anew.
+TEST_F(Moves, LinksAreLookedAtAgain) {
+  Links links(device(), scene_, settings_);
+  auto offsets = at_rest(scene_);
+  const auto solution = links.solve(offsets);
+  std::uint64_t misses = 0, looked_at = 0;
+  for (std::uint32_t pair = 0; pair < settings_.psf / 2; pair += 2) {
+    const auto check = links.check(2);
+    EXPECT_GT(check.links, 0u);
+    EXPECT_EQ(check.differing, 0u) << "pair " << pair << ": nothing has moved";
+    misses += check.misses;
+    looked_at += check.links;
+  }
+  EXPECT_EQ(misses, solution.misses);
+  EXPECT_EQ(looked_at, std::uint64_t{solution.texels_valid} * settings_.psf / 2);
+  EXPECT_EQ(links.check(2).links, 0u);
+  offsets[1].x -= 0.3f;
+  links.solve(offsets);
+  EXPECT_EQ(links.check(settings_.psf).links, looked_at);
+  EXPECT_LT(rel_rmse(links.irradiance(), fresh(scene_, settings_, offsets)), 2e-3);
+}
+
+// Half of the directions a step: each map is on its way to where all of them lead.
+TEST_F(Moves, HalfBouncesFollowAndArrive) {
+  auto offsets = at_rest(scene_);
+  offsets[1].x -= 0.3f;
+  const auto afresh = fresh(scene_, settings_, offsets);
+  std::map<float, double> missing;
+  for (const float bounces : {0.5f, 1.0f, 2.0f}) {
+    auto settings = settings_;
+    settings.step_bounces = bounces;
+    Links links(device(), scene_, settings);
+    links.solve(at_rest(scene_));
+    const double before = rel_rmse(links.irradiance(), afresh);
+    EXPECT_EQ(links.update(offsets, [](std::uint32_t) { return true; }).bounces, bounces < 1 ? 1 : bounces);
+    missing[bounces] = rel_rmse(links.irradiance(), afresh);
+    EXPECT_LT(missing[bounces], 0.8 * before);
+    links.solve(offsets);
+    EXPECT_LT(rel_rmse(links.irradiance(), afresh), 2e-3);
+  }
+  EXPECT_GT(missing[0.5f], missing[1.0f]);
+  EXPECT_GT(missing[1.0f], missing[2.0f]);
+}
+
+TEST_F(Moves, FullRadianceSaysTheSame) {
+  auto settings = settings_;
+  settings.radiance = Radiance::full;
+  const auto full = fresh(scene_, settings);
+  EXPECT_LT(rel_rmse(fresh(scene_, settings_), full), 1e-3);
+  EXPECT_GT(rel_rmse(fresh(scene_, settings_), full), 0);
 }
 
 // A body that leaves the room makes the scene's sphere, and so all rasters, larger.

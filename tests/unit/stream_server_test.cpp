@@ -35,8 +35,8 @@ TEST_F(RoomTest, JoinerGetsPlacesAtOnceAndTheWholeMap) {
 
 TEST_F(RoomTest, WorkIsReportedWhenThereIsMoreOfIt) {
   auto with_work = options();
-  with_work.work_times = [] {
-    return WorkTimes{.stages = {{"encode", 2, 0.5}}, .passes = {{"gather", 4, 0.25}}};
+  with_work.work = [] {
+    return Work{.stages = {{"encode", 2, 0.5}}, .passes = {{"gather", 4, 0.25}}, .counts = {{"links", 7}}};
   };
   server = std::make_unique<Server>(std::move(with_work));
   wait_connected();
@@ -54,6 +54,8 @@ TEST_F(RoomTest, WorkIsReportedWhenThereIsMoreOfIt) {
   EXPECT_EQ(work.at("stages").at(0), (nlohmann::json{{"name", "encode"}, {"runs", 2}, {"seconds", 0.5}}));
   EXPECT_EQ(work.at("stages").at(1).at("name"), "send");
   EXPECT_GT(work.at("stages").at(1).at("seconds"), 0.0);
+  EXPECT_EQ(work.at("counts").at(0), (nlohmann::json{{"name", "links"}, {"value", 7}}));
+  EXPECT_EQ(work.at("counts").at(1), (nlohmann::json{{"name", "maps_sent"}, {"value", 1}}));
   EXPECT_EQ(work.at("passes"), (nlohmann::json{{{"name", "gather"}, {"runs", 4}, {"seconds", 0.25}}}));
 }
 

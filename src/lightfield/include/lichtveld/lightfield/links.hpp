@@ -12,6 +12,12 @@
 
 namespace lichtveld::lightfield {
 
+// Kept links against those of a fresh build with the bodies where they are.
+struct LinkCheck {
+  std::uint64_t links = 0, differing = 0;      // looked at; of these, those that see another place
+  std::uint64_t misses = 0, rays_unknown = 0;  // of the links looked at, as in Solution
+};
+
 class Links {
  public:
   // The device and the scene must outlive it. Throws std::invalid_argument for settings out of their ranges and
@@ -28,6 +34,12 @@ class Links {
   // be missing; error_estimate is left out. Where nothing has moved and nothing is missing, nothing is done and
   // bounces is 0.
   Solution update(const std::vector<glm::vec3>& offsets, const std::function<bool(std::uint32_t)>& enough);
+
+  // Routes up to `pairs` pairs of directions again, in full, and compares: those that have not been looked at
+  // since the last move. Nothing once all have. After solve() or update(). None or a few in a million are
+  // expected to differ: edges that were cut off at a region may have been rounded to the other side of a
+  // pixel's centre.
+  LinkCheck check(std::uint32_t pairs);
 
   // After either. size * size texels, row 0 on top.
   std::vector<glm::vec4> irradiance();    // rgb: E [W m^-2]; a: 1 on valid texels

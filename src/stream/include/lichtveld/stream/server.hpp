@@ -27,10 +27,18 @@ struct WorkTime {
   bool operator==(const WorkTime&) const = default;
 };
 
+// The same of things that are only counted.
+struct WorkCount {
+  std::string name;  // as in WorkTime
+  std::uint64_t value = 0;
+  bool operator==(const WorkCount&) const = default;
+};
+
 // Of the stages that a map goes through, and of the passes of one of them.
-struct WorkTimes {
+struct Work {
   std::vector<WorkTime> stages, passes;
-  bool operator==(const WorkTimes&) const = default;
+  std::vector<WorkCount> counts;
+  bool operator==(const Work&) const = default;
 };
 
 struct ServerOptions {
@@ -47,9 +55,9 @@ struct ServerOptions {
   std::function<Place(std::size_t cube, const std::vector<Place>& places, Move move)> mover;
   // Called on the server's thread whenever places have changed. Must not block. May be empty.
   std::function<void(const std::vector<Place>& places)> places_changed;
-  // What there is to report besides the stage `send`, which is this server's own: called on the server's thread
-  // once a second. Must not block. May be empty.
-  std::function<WorkTimes()> work_times;
+  // What there is to report besides the stage `send` and the counts of ServerStatistics, which are this
+  // server's own: called on the server's thread twice a second. Must not block. May be empty.
+  std::function<Work()> work;
 };
 
 // What /metrics and the log show; counts since the start.
