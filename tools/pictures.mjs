@@ -1,6 +1,7 @@
 #!/usr/bin/env node
 /**
- * Redraws docs/pictures: two browsers in one room, and what each pass makes of the Cornell room. Needs the built render
+ * Redraws docs/pictures: two browsers in one room, a strip of one while the other moves its cube, and what each pass
+ * makes of the Cornell room. Needs the built render
  * server and web client, a Chromium and oiiotool; `./dev pictures` sees to that and to a network in which they meet.
  *
  *   tests/e2e/own_network.sh node tools/pictures.mjs
@@ -23,6 +24,11 @@ const shownPsf = 188;
 /** Bytes: pictures travel with every clone. */
 const largest = 300_000;
 const gap = 12;
+/** As `serve` shows it while something moves: with all bounces, of which one is new in each map. */
+const moving = ['--size', '256', '--psf', '384'];
+/** Metres from the left wall at which the strip's pictures are taken, and the part of the page that they show. */
+const stripAt = [0, 0.8, 1.6, 2.4];
+const stripClip = { x: 100, y: 170, width: 400, height: 380 };
 
 // Without a note of the command line, which would hold this machine's paths.
 const oiiotool = (...args) =>
@@ -79,19 +85,71 @@ function drawPasses() {
   }
 }
 
-/** Two players in one room, after each has moved a cube. */
-async function drawTwoBrowsers() {
+/** Two players in one room. */
+async function withTwoPlayers(options, act) {
   const afterwards = [];
   const t = { after: (task) => afterwards.push(task), diagnostic: () => {} };
   try {
-    const { url } = await play(t, quality);
+    const { url } = await play(t, options);
     const browser = await launch(t);
     const players = [];
     for (const cube of [1, 2]) {
       const player = await browser.open(url, { viewport: { width: 800, height: 600 } });
       await player.until('a player', ({ state, role }) => state === 'live' && role?.cube === cube);
+      await player.lit(120_000);
       players.push(player);
     }
+    await act(players);
+  } finally {
+    for (const task of afterwards.reverse()) await task();
+  }
+}
+
+/** Pictures of the same height beside each other. */
+function beside(pictures) {
+  const all = new PNG({
+    width: pictures.reduce((width, picture) => width + picture.width + gap, -gap),
+    height: pictures[0].height,
+  });
+  let left = 0;
+  for (const picture of pictures) {
+    PNG.bitblt(picture, all, 0, 0, picture.width, picture.height, left, 0);
+    left += picture.width + gap;
+  }
+  return PNG.sync.write(all, { colorType: 2, filterType: 4, deflateStrategy: 0 });
+}
+
+/** What the second player sees while the first holds an arrow: light and shadow go with the cube. */
+async function drawMovingCube() {
+  await withTwoPlayers(moving, async ([first, second]) => {
+    const { keyboard } = first.page;
+    const hold = async (key, done) => {
+      await keyboard.down(key);
+      await second.until(`moved by ${key}`, done);
+      await keyboard.up(key);
+    };
+    const standsStill = () => {
+      let last = '';
+      return ({ places }) => last === (last = JSON.stringify(places));
+    };
+    await hold('ArrowDown', standsStill());
+    await hold('ArrowLeft', standsStill());
+    await second.settledMap();
+    const from = (await second.knows()).places[0].x;
+    const pictures = [];
+    await keyboard.down('ArrowRight');
+    for (const metres of stripAt) {
+      await second.until(`${metres} m away`, ({ places }) => places[0].x >= from + metres);
+      pictures.push(PNG.sync.read(await second.page.screenshot({ clip: stripClip })));
+    }
+    await keyboard.up('ArrowRight');
+    writeFileSync(join(folder, 'moving-cube.png'), beside(pictures));
+  });
+}
+
+/** Two players in one room, after each has moved a cube. */
+async function drawTwoBrowsers() {
+  await withTwoPlayers(quality, async (players) => {
     for (const [n, player] of players.entries()) {
       const { places, mapsReceived } = await player.lit(120_000);
       await player.page.keyboard.press('ArrowUp');
@@ -103,21 +161,14 @@ async function drawTwoBrowsers() {
     const [left, right] = await Promise.all(
       players.map(async ({ page }) => PNG.sync.read(await page.screenshot())),
     );
-    const both = new PNG({ width: left.width + gap + right.width, height: left.height });
-    PNG.bitblt(left, both, 0, 0, left.width, left.height, 0, 0);
-    PNG.bitblt(right, both, 0, 0, right.width, right.height, left.width + gap, 0);
-    writeFileSync(
-      join(folder, 'two-browsers.png'),
-      PNG.sync.write(both, { colorType: 2, filterType: 4, deflateStrategy: 0 }),
-    );
-  } finally {
-    for (const task of afterwards.reverse()) await task();
-  }
+    writeFileSync(join(folder, 'two-browsers.png'), beside([left, right]));
+  });
 }
 
 mkdirSync(folder, { recursive: true });
 drawPasses();
 await drawTwoBrowsers();
+await drawMovingCube();
 const names = [
   'geometry_texture',
   'emit_radiance',
@@ -126,6 +177,7 @@ const names = [
   'brdf',
   'tone_map',
   'two-browsers',
+  'moving-cube',
 ];
 for (const name of names) {
   const path = join(folder, `${name}.png`);
