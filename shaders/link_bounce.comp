@@ -12,8 +12,9 @@ layout(binding = 3, rgba32f) uniform readonly image2D albedo;
 layout(binding = 4, rgba32f) uniform readonly image2D emission;
 layout(binding = 5, rgba32f) uniform image2D total_irradiance;           // rgb: E [W m^-2]; a: 1
 layout(binding = 6, rgba32f) uniform writeonly image2D half_difference;  // rgb: (E of half 0 - E of half 1) / 2
-layout(binding = 7) writeonly buffer Radiance { uint radiance[]; };      // RADIANCE_WORDS each
+layout(binding = 7) writeonly buffer Packed { uint packed_radiance[]; };
 layout(binding = 8) writeonly buffer Changes { vec2 changes[]; };        // largest change and sum of E, a workgroup
+layout(binding = 9) writeonly buffer Full { float full_radiance[]; };   // three each
 layout(push_constant) uniform Push { BounceConstants constants; };
 
 const float PI = 3.14159265358979;
@@ -33,9 +34,9 @@ void main() {
     imageStore(total_irradiance, texel, vec4(e, 1.0));
     imageStore(half_difference, texel, vec4((irradiance(first) - irradiance(second)) / 2.0, 0.0));
     const vec3 l = imageLoad(emission, texel).rgb + imageLoad(albedo, texel).rgb / PI * e;
-    const uvec3 words = floatBitsToUint(l * constants.radiance_scale);
-    if (RADIANCE_WORDS == 1u) radiance[me] = pack_radiance(l * constants.radiance_scale);
-    else for (uint k = 0u; k < 3u; ++k) radiance[3u * me + k] = words[k];
+    const vec3 scaled = l * constants.radiance_scale;
+    packed_radiance[me] = pack_radiance(scaled);
+    for (uint k = 0u; k < 3u; ++k) full_radiance[3u * me + k] = scaled[k];
     mine = vec2(max(change.r, max(change.g, change.b)), e.r + e.g + e.b);
   }
   partial[lane] = mine;

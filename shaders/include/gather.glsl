@@ -10,6 +10,9 @@ layout(push_constant) uniform Push { GatherConstants constants; };
 
 #include "packed_radiance.glsl"
 
+// Words of a texel: 1 packed, 3 as 32-bit floats.
+layout(constant_id = 0) const uint RADIANCE_WORDS = 1;
+
 vec3 radiance_of(uint texel) {
   if (RADIANCE_WORDS == 1u) return unpack_radiance(radiance[texel]);
   return uintBitsToFloat(uvec3(radiance[3u * texel], radiance[3u * texel + 1u], radiance[3u * texel + 2u]));

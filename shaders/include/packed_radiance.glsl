@@ -17,6 +17,3 @@ vec3 unpack_radiance(uint bits) {
   const float scale = uintBitsToFloat(((bits >> 27u) + 103u) << 23u);  // 2^(exponent - 24)
   return vec3(bits & 511u, bits >> 9u & 511u, bits >> 18u & 511u) * scale;
 }
-
-// Words of a texel: 1 packed, 3 as 32-bit floats.
-layout(constant_id = 0) const uint RADIANCE_WORDS = 1;

@@ -160,8 +160,10 @@ void add_links_options(CLI::App& command, lightfield::Settings& settings) {
           "Of --method links: bounces of the map after a move, 1.., or 0.5: one over half of the directions, "
           "in turn; what is missing follows with the next maps")
       ->capture_default_str();
-  add_choice(command, "--radiance", settings.radiance, radiances,
-             "Of --method links: how a bounce reads what texels send: in one word each (RGB9E5), or in three");
+  add_choice(
+      command, "--radiance", settings.radiance, radiances,
+      "Of --method links: how the bounces of the map after a move read what texels send: in one word each "
+      "(RGB9E5), or in three, as all others do");
 }
 
 void add_bounces_option(CLI::App& command, lightfield::Settings& settings) {

@@ -25,29 +25,31 @@ std::vector<glm::vec4> pair_directions(const std::vector<Direction>& directions)
   return pairs;
 }
 
-std::uint32_t words_of(Radiance radiance) {
-  return radiance == Radiance::packed ? 1 : 3;
+gpu::ComputePipeline gather_pipeline(const gpu::Device& device, const LinkTable& table, std::uint32_t words) {
+  return {device,
+          "gather",
+          table.bits == 16 ? gpu::Spirv(gather_16_comp) : gpu::Spirv(gather_32_comp),
+          {.kinds = {Kind::storage_buffer, Kind::storage_buffer, Kind::storage_buffer, Kind::storage_buffer,
+                     Kind::storage_image, Kind::storage_buffer},
+           .push_bytes = sizeof(shaders::GatherConstants),
+           .specialisation = {words}}};
 }
 
 }  // namespace
 
 Gather::Gather(const gpu::Device& device, const LinkTable& table, const std::vector<Direction>& directions,
-               Radiance radiance, float scale)
+               float scale)
     : pairs_(static_cast<std::uint32_t>(directions.size() / 2)),
       scale_(scale),
-      gather_(device, "gather", table.bits == 16 ? gpu::Spirv(gather_16_comp) : gpu::Spirv(gather_32_comp),
-              {.kinds = {Kind::storage_buffer, Kind::storage_buffer, Kind::storage_buffer, Kind::storage_buffer,
-                         Kind::storage_image, Kind::storage_buffer},
-               .push_bytes = sizeof(shaders::GatherConstants),
-               .specialisation = {words_of(radiance)}}),
+      gather_packed_(gather_pipeline(device, table, 1)),
+      gather_full_(gather_pipeline(device, table, 3)),
       end_(device, "gather", link_bounce_comp,
            {.kinds = {Kind::storage_buffer, Kind::storage_buffer, Kind::storage_buffer, Kind::storage_image,
                       Kind::storage_image, Kind::storage_image, Kind::storage_image, Kind::storage_buffer,
-                      Kind::storage_buffer},
-            .push_bytes = sizeof(shaders::BounceConstants),
-            .specialisation = {words_of(radiance)}}),
-      radiance_(storage(device, "lightfield/link_radiance",
-                        vk::DeviceSize{words_of(radiance)} * (table.texels + 1) * sizeof(std::uint32_t))),
+                      Kind::storage_buffer, Kind::storage_buffer},
+            .push_bytes = sizeof(shaders::BounceConstants)}),
+      packed_(storage(device, "lightfield/packed_radiance", (table.texels + 1) * sizeof(std::uint32_t))),
+      full_(storage(device, "lightfield/full_radiance", (table.texels + 1) * 3 * sizeof(float))),
       directions_(gpu::upload<glm::vec4>(device, "lightfield/pair_directions", pair_directions(directions),
                                          vk::BufferUsageFlagBits::eStorageBuffer)),
       sums_{storage(device, "lightfield/sums 0", table.texels * sizeof(glm::vec4)),
@@ -55,13 +57,14 @@ Gather::Gather(const gpu::Device& device, const LinkTable& table, const std::vec
       changes_(storage(device, "lightfield/changes", table.groups() * sizeof(glm::vec2), gpu::Memory::host)) {}
 
 void Gather::start(gpu::Frame& frame, const LightMap& map, const LinkTable& table) const {
-  frame.clear("gather", radiance_);
+  frame.clear("gather", packed_);
+  frame.clear("gather", full_);
   frame.clear("gather", map.total_irradiance, {});
   for (const auto& sum : sums_) frame.clear("gather", sum);
   end(frame, map, table);
 }
 
-void Gather::bounce(gpu::Frame& frame, const LightMap& map, const LinkTable& table,
+void Gather::bounce(gpu::Frame& frame, const LightMap& map, const LinkTable& table, Radiance radiance,
                     std::initializer_list<std::uint32_t> halves) const {
   for (const auto half : halves) {
     const std::uint32_t begin = half * pairs_ / 2, finish = begin + pairs_ / 2;
@@ -70,9 +73,10 @@ void Gather::bounce(gpu::Frame& frame, const LightMap& map, const LinkTable& tab
       const auto first = std::max(begin, chunk.first_pair),
                  last = std::min(finish, chunk.first_pair + chunk.pairs);
       if (first >= last) continue;
-      frame.compute(gather_,
-                    {gpu::reads(chunk.links), gpu::reads(radiance_), gpu::reads(directions_),
-                     gpu::reads(table.texel_of), gpu::reads(map.normal), gpu::writes(sums_[half])},
+      frame.compute(radiance == Radiance::packed ? gather_packed_ : gather_full_,
+                    {gpu::reads(chunk.links), gpu::reads(radiance == Radiance::packed ? packed_ : full_),
+                     gpu::reads(directions_), gpu::reads(table.texel_of), gpu::reads(map.normal),
+                     gpu::writes(sums_[half])},
                     shaders::GatherConstants{.texels = table.texels,
                                              .first = first - chunk.first_pair,
                                              .pairs = last - first,
@@ -89,7 +93,7 @@ void Gather::end(gpu::Frame& frame, const LightMap& map, const LinkTable& table)
   frame.compute(end_,
                 {gpu::reads(sums_[0]), gpu::reads(sums_[1]), gpu::reads(table.texel_of), gpu::reads(map.albedo),
                  gpu::reads(map.emission), gpu::writes(map.total_irradiance), gpu::writes(map.half_difference),
-                 gpu::writes(radiance_), gpu::writes(changes_)},
+                 gpu::writes(packed_), gpu::writes(changes_), gpu::writes(full_)},
                 shaders::BounceConstants{.texels = table.texels, .radiance_scale = scale_}, table.groups(), 1);
   frame.to_host(changes_);
 }

@@ -17,12 +17,12 @@ class Gather {
  public:
   // `scale`: what radiance is multiplied by to fit its packing.
   Gather(const gpu::Device& device, const LinkTable& table, const std::vector<Direction>& directions,
-         Radiance radiance, float scale);
+         float scale);
 
   // L = Le: no bounce yet.
   void start(gpu::Frame& frame, const LightMap& map, const LinkTable& table) const;
   // Over these halves of the directions; of the others the sums of before count on.
-  void bounce(gpu::Frame& frame, const LightMap& map, const LinkTable& table,
+  void bounce(gpu::Frame& frame, const LightMap& map, const LinkTable& table, Radiance radiance,
               std::initializer_list<std::uint32_t> halves = {0, 1}) const;
 
   const gpu::Buffer& directions() const { return directions_; }  // vec4 a pair: xyz; w: solid angle [sr]
@@ -39,8 +39,8 @@ class Gather {
 
   std::uint32_t pairs_;
   float scale_;
-  gpu::ComputePipeline gather_, end_;
-  gpu::Buffer radiance_;             // one or three words a texel; the one after the last texel stays black
+  gpu::ComputePipeline gather_packed_, gather_full_, end_;
+  gpu::Buffer packed_, full_;        // radiance [scaled]; that after the last texel stays black
   gpu::Buffer directions_;           // vec4 a pair
   std::array<gpu::Buffer, 2> sums_;  // of each half of the directions
   gpu::Buffer changes_;              // vec2 a workgroup, host-visible

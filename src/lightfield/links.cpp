@@ -84,8 +84,7 @@ struct Links::Parts {
     find_sources();
     brightest_of_scene = brightest(device, map);
     table = std::make_unique<LinkTable>(device, scene, map, pairs());
-    gather =
-        std::make_unique<Gather>(device, *table, psfs, settings.radiance, radiance_scale(brightest_of_scene));
+    gather = std::make_unique<Gather>(device, *table, psfs, radiance_scale(brightest_of_scene));
     layered = std::make_unique<Layered>(device, settings, *table, capacity_for(settings.layers));
   }
 
@@ -123,7 +122,7 @@ struct Links::Parts {
   void find_cover(const std::vector<std::uint32_t>& groups);
   LinkCheck check_two();
   void start();
-  void bounce();
+  void bounce(Radiance radiance = Radiance::full);
   void half_bounce();
   void converge(const std::function<bool(std::uint32_t)>& enough);
   void present();
@@ -343,9 +342,9 @@ void Links::Parts::start() {
   lit = true;
 }
 
-void Links::Parts::bounce() {
+void Links::Parts::bounce(Radiance radiance) {
   gpu::Frame frame(device, times);
-  gather->bounce(frame, map, *table);
+  gather->bounce(frame, map, *table, radiance);
   frame.submit_and_wait();
   ++solution.bounces;
   const auto change = gather->change(*table);
@@ -356,14 +355,13 @@ void Links::Parts::bounce() {
 // half the light of one step ago. It says nothing about what is missing.
 void Links::Parts::half_bounce() {
   gpu::Frame frame(device, times);
-  gather->bounce(frame, map, *table, {next_half});
+  gather->bounce(frame, map, *table, settings.radiance, {next_half});
   frame.submit_and_wait();
   next_half = 1 - next_half;
   ++solution.bounces;
 }
 
-// As many bounces as are asked for; or until the bound is met, or falls no more: with few directions the
-// packing's last digits may go on flickering by more.
+// As many bounces as are asked for; or until the bound is met, or falls no more, for rounding.
 void Links::Parts::converge(const std::function<bool(std::uint32_t)>& enough) {
   if (settings.bounces) {
     start();
@@ -381,7 +379,8 @@ void Links::Parts::converge(const std::function<bool(std::uint32_t)>& enough) {
   double least = std::numeric_limits<double>::infinity();
   std::uint32_t since = 0;
   do {
-    bounce();
+    // Packed radiance flickers in its last digits, and would not let light settle.
+    bounce(solution.bounces < asked ? settings.radiance : Radiance::full);
     since = solution.residual < least ? 0 : since + 1;
     least = std::min(least, solution.residual);
     solution.settled = solution.residual < converged || since == patience || solution.bounces == most_bounces;

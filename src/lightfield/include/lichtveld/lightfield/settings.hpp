@@ -10,7 +10,8 @@ enum class ABuffer { stencil, list };
 enum class Sort { bitonic, compare_swap, scan };  // as SORT_* in shaders/include/shared.h
 // A direction's share: its solid angle (the thesis' correction factor), or the same for all.
 enum class Weights { solid_angle, equal };
-// links: of a texel, as a bounce reads it: a word (RGB9E5), or three of 32-bit float.
+// links: of a texel, as a bounce after a move reads it: a word (RGB9E5), or three of 32-bit float. Other
+// bounces read the latter.
 enum class Radiance { packed, full };
 
 // What the A-buffer can hold: the stencil counts a pixel's layers in 8 bits.
