@@ -65,8 +65,24 @@ void Draw::geometry(const Buffer& vertices, const Buffer& indices) {
   commands_.bindIndexBuffer(indices.handle(), 0, vk::IndexType::eUint32);
 }
 
-void Draw::indexed(std::uint32_t first, std::uint32_t count, std::uint32_t instances) {
-  if (count > 0) commands_.drawIndexed(count, instances, first, 0, 0);
+void Draw::windows(const std::vector<Window>& windows) {
+  std::vector<vk::Viewport> viewports;
+  std::vector<vk::Rect2D> scissors;
+  for (const auto& window : windows) {
+    viewports.push_back({.x = static_cast<float>(window.offset.x),
+                         .y = static_cast<float>(window.offset.y),
+                         .width = static_cast<float>(window.extent.width),
+                         .height = static_cast<float>(window.extent.height),
+                         .maxDepth = 1});
+    scissors.push_back(window.visible);
+  }
+  commands_.setViewportWithCount(viewports);
+  commands_.setScissorWithCount(scissors);
+}
+
+void Draw::indexed(std::uint32_t first, std::uint32_t count, std::uint32_t instances,
+                   std::uint32_t first_instance) {
+  if (count > 0) commands_.drawIndexed(count, instances, first, 0, first_instance);
 }
 
 void Draw::full_screen_triangle() {

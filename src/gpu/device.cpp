@@ -55,12 +55,14 @@ std::string missing_features(const vk::raii::PhysicalDevice& physical) {
     want(std::any_of(extensions.begin(), extensions.end(),
                      [&](const auto& extension) { return std::strcmp(extension.extensionName, wanted) == 0; }),
          wanted);
-  const auto features =
-      physical.getFeatures2<vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceVulkan13Features>();
+  const auto features = physical.getFeatures2<vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceVulkan12Features,
+                                              vk::PhysicalDeviceVulkan13Features>();
   const auto& core = features.get<vk::PhysicalDeviceFeatures2>().features;
   const auto& newer = features.get<vk::PhysicalDeviceVulkan13Features>();
   want(core.fragmentStoresAndAtomics, "fragmentStoresAndAtomics");
-  want(core.shaderClipDistance, "shaderClipDistance");
+  want(core.multiViewport, "multiViewport");
+  want(features.get<vk::PhysicalDeviceVulkan12Features>().shaderOutputViewportIndex,
+       "shaderOutputViewportIndex");
   want(core.geometryShader, "geometryShader (a fragment's triangle number)");
   want(newer.dynamicRendering, "dynamicRendering");
   want(newer.synchronization2, "synchronization2");
@@ -178,12 +180,14 @@ vk::raii::Device make_device(const vk::raii::PhysicalDevice& physical, std::uint
   const vk::DeviceQueueCreateInfo queue{
       .queueFamilyIndex = family, .queueCount = 1, .pQueuePriorities = &priority};
   const vk::PhysicalDeviceFeatures core{.geometryShader = true,  // gl_PrimitiveID in fragment shaders
-                                        .fragmentStoresAndAtomics = true,
-                                        .shaderClipDistance = true};
+                                        .multiViewport = true,
+                                        .fragmentStoresAndAtomics = true};
   const bool storage_16_bit = summarise(physical).storage_16_bit;
   const vk::PhysicalDeviceVulkan11Features newer_11{.storageBuffer16BitAccess = storage_16_bit};
+  const vk::PhysicalDeviceVulkan12Features newer_12{
+      .pNext = const_cast<vk::PhysicalDeviceVulkan11Features*>(&newer_11), .shaderOutputViewportIndex = true};
   const vk::PhysicalDeviceVulkan13Features newer{
-      .pNext = const_cast<vk::PhysicalDeviceVulkan11Features*>(&newer_11),
+      .pNext = const_cast<vk::PhysicalDeviceVulkan12Features*>(&newer_12),
       .synchronization2 = true,
       .dynamicRendering = true,
       .maintenance4 = true};

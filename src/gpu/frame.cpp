@@ -87,11 +87,8 @@ void Frame::render(const std::string& name, const Target& target, const std::vec
                               .colorAttachmentCount = static_cast<std::uint32_t>(colours.size()),
                               .pColorAttachments = colours.data(),
                               .pStencilAttachment = target.stencil ? &stencil : nullptr});
-    commands_.setViewport(0, vk::Viewport{.width = static_cast<float>(target.extent.width),
-                                          .height = static_cast<float>(target.extent.height),
-                                          .maxDepth = 1});
-    commands_.setScissor(0, vk::Rect2D{{0, 0}, target.extent});
     Draw recorder(commands_);
+    recorder.windows({{{{0, 0}, target.extent, {{0, 0}, target.extent}}}});
     draw(recorder);
     commands_.endRendering();
   });

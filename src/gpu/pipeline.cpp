@@ -106,7 +106,7 @@ GraphicsPipeline::GraphicsPipeline(const Device& device, std::string name, Spirv
       .vertexAttributeDescriptionCount = static_cast<std::uint32_t>(attributes.size()),
       .pVertexAttributeDescriptions = attributes.data()};
   const vk::PipelineInputAssemblyStateCreateInfo assembly{.topology = vk::PrimitiveTopology::eTriangleList};
-  const vk::PipelineViewportStateCreateInfo viewport{.viewportCount = 1, .scissorCount = 1};
+  const vk::PipelineViewportStateCreateInfo viewport;  // dynamic
   const vk::PipelineRasterizationStateCreateInfo raster{
       .cullMode = state.cull, .frontFace = state.front, .lineWidth = 1};
   const vk::PipelineMultisampleStateCreateInfo multisample{
@@ -122,7 +122,8 @@ GraphicsPipeline::GraphicsPipeline(const Device& device, std::string name, Spirv
   const std::vector blends(state.colours.size(), write_all);
   const vk::PipelineColorBlendStateCreateInfo blend{
       .attachmentCount = static_cast<std::uint32_t>(blends.size()), .pAttachments = blends.data()};
-  const vk::DynamicState dynamic_states[] = {vk::DynamicState::eViewport, vk::DynamicState::eScissor,
+  const vk::DynamicState dynamic_states[] = {vk::DynamicState::eViewportWithCount,
+                                             vk::DynamicState::eScissorWithCount,
                                              vk::DynamicState::eStencilReference};
   const vk::PipelineDynamicStateCreateInfo dynamic{.dynamicStateCount = stencil ? 3u : 2u,
                                                    .pDynamicStates = dynamic_states};

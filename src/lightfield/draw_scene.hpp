@@ -23,17 +23,17 @@ inline gpu::GraphicsState scene_state() {
 template <typename Constants>
 void draw_scene(gpu::Draw& draw, const std::vector<gpu::GraphicsPipeline>& pipelines, const Geometry& geometry,
                 const std::vector<gpu::Binding>& bindings, const Constants& constants,
-                std::uint32_t instances = 1) {
+                std::uint32_t instances = 1, std::uint32_t first_instance = 0) {
   const auto one_sided = geometry.scene.one_sided_indices;
   const auto all = static_cast<std::uint32_t>(geometry.scene.indices.size());
   draw.geometry(geometry.vertices, geometry.indices);
   draw.bind(pipelines[0], bindings);
   draw.push(constants);
-  draw.indexed(0, one_sided, instances);
+  draw.indexed(0, one_sided, instances, first_instance);
   if (one_sided == all) return;
   draw.bind(pipelines[1], bindings);
   draw.push(constants);
-  draw.indexed(one_sided, all - one_sided, instances);
+  draw.indexed(one_sided, all - one_sided, instances, first_instance);
 }
 
 }  // namespace lichtveld::lightfield

@@ -64,6 +64,15 @@ gpu::Interface look_interface(const LinkStore& store, const LinkTable& table) {
           .specialisation = {store.capacity, table.tile}};
 }
 
+// The whole raster at its place, of which the region is visible: nothing is cut off where a region ends, which
+// would round edges anew, so that a region is exactly that part of the raster.
+gpu::Window window_of(const shaders::Region& region, std::uint32_t pixels) {
+  return {.offset = {region.place.x - region.rect.x, region.place.y - region.rect.y},
+          .extent = {pixels, pixels},
+          .visible = {{region.place.x, region.place.y},
+                      {static_cast<std::uint32_t>(region.rect.z), static_cast<std::uint32_t>(region.rect.w)}}};
+}
+
 gpu::Buffer host_buffer(const gpu::Device& device, const char* name) {
   return {device, name, sizeof(shaders::Region), vk::BufferUsageFlagBits::eStorageBuffer, gpu::Memory::host};
 }
@@ -181,11 +190,20 @@ void RouteLinks::record(gpu::Frame& frame, const RegionBatch& batch, const Geome
   const shaders::EmitLinksConstants emit{.size = pixels,
                                          .store_width = store.extent.width,
                                          .store_height = store.extent.height,
-                                         .capacity = store.capacity};
-  const auto instances = static_cast<std::uint32_t>(batch.regions.size());
+                                         .capacity = store.capacity,
+                                         .windows = gpu::most_windows};
   frame.render("emit_links", {.extent = {store.extent.width, store.extent.height}}, bindings,
-               {&geometry.vertices, &geometry.indices},
-               [&](gpu::Draw& draw) { draw_scene(draw, draw_, geometry, bindings, emit, instances); });
+               {&geometry.vertices, &geometry.indices}, [&](gpu::Draw& draw) {
+                 const auto count = static_cast<std::uint32_t>(batch.regions.size());
+                 for (std::uint32_t first = 0; first < count; first += gpu::most_windows) {
+                   const auto end = std::min(first + gpu::most_windows, count);
+                   std::vector<gpu::Window> windows;
+                   for (auto index = first; index < end; ++index)
+                     windows.push_back(window_of(batch.regions[index], pixels));
+                   draw.windows(windows);
+                   draw_scene(draw, draw_, geometry, bindings, emit, end - first, first);
+                 }
+               });
   frame.compute(count_, {gpu::reads(store.filled), gpu::writes(counters)},
                 shaders::CountLayersConstants{.pixels = batch.rows * store.extent.width, .limit = limit},
                 many_groups, 1);

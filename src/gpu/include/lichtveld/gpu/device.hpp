@@ -31,7 +31,7 @@ struct DeviceSummary {
   std::uint64_t max_storage_buffer = 0, memory = 0;  // bytes
   std::uint32_t subgroup_size = 0;
   bool storage_16_bit = false;  // storage buffers of 16-bit values
-  std::string missing;  // empty, or the features we need that it lacks
+  std::string missing;          // empty, or the features we need that it lacks
 };
 
 // Every Vulkan device, in the order in which they would be chosen. Empty if there is none.

@@ -49,9 +49,20 @@ struct Target {
   std::optional<Attachment> stencil = {};
 };
 
+// Where gl_Position lands: [-1, 1] on `extent` pixels from `offset` on, of which only `visible` is drawn.
+struct Window {
+  vk::Offset2D offset;  // may lie outside the target
+  vk::Extent2D extent;
+  vk::Rect2D visible;  // in the target
+};
+// So many at once; a vertex shader names its own by gl_ViewportIndex. Every device with several has these.
+constexpr std::uint32_t most_windows = 16;
+
 // Records draws inside Frame::render.
 class Draw {
  public:
+  // Up to most_windows. Without a call there is one: the whole target.
+  void windows(const std::vector<Window>& windows);
   // Binds a pipeline and its resources, which the pass must have listed.
   void bind(const GraphicsPipeline& pipeline, const std::vector<Binding>& bindings = {});
   template <typename Constants>
@@ -60,7 +71,8 @@ class Draw {
   }
   void stencil_reference(std::uint32_t value);
   void geometry(const Buffer& vertices, const Buffer& indices);  // 32-bit indices
-  void indexed(std::uint32_t first, std::uint32_t count, std::uint32_t instances = 1);
+  void indexed(std::uint32_t first, std::uint32_t count, std::uint32_t instances = 1,
+               std::uint32_t first_instance = 0);
   void full_screen_triangle();
 
  private:

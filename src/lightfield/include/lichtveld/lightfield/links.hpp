@@ -36,9 +36,8 @@ class Links {
   Solution update(const std::vector<glm::vec3>& offsets, const std::function<bool(std::uint32_t)>& enough);
 
   // Routes up to `pairs` pairs of directions again, in full, and compares: those that have not been looked at
-  // since the last move. Nothing once all have. After solve() or update(). None or a few in a million are
-  // expected to differ: edges that were cut off at a region may have been rounded to the other side of a
-  // pixel's centre.
+  // since the last move. Nothing once all have. After solve() or update(). None is expected to differ. (A
+  // pixel's centre on the border of two texels may see either.)
   LinkCheck check(std::uint32_t pairs);
 
   // After either. size * size texels, row 0 on top.
