@@ -17,12 +17,12 @@ void main() {
     const Receiver receiver = receivers[ray.x];
     const vec3 place = positions[ray.x].xyz, face = receiver.face_and_triangle.xyz;
     const Sight sight = look(place, face, region);
-    const float margin = wall_margin(2.0 / float(constants.size), sight.face_cosine * sight.scale);
+    const Blur blur = blur_of(2.0 / float(constants.size), sight.scale, sight.travel, sight.face_cosine);
     const vec3 away = away_to(shift_to(sight.nearest, sight), sight, region);
-    const bool between = is_between(receiver.near.x, place, away, face, margin, false) ||
-                         is_between(receiver.near.y, place, away, face, margin, false);
+    const bool between = is_between(receiver.near.x, place, away, face, blur, false) ||
+                         is_between(receiver.near.y, place, away, face, blur, false);
     // With three walls in reach the two nearest do not decide.
-    if (doubt != ray || between || length(away) + margin >= uintBitsToFloat(receiver.near.w))
+    if (doubt != ray || between || length(away) + most_blur(blur) >= uintBitsToFloat(receiver.near.w))
       rest[atomicAdd(counters.rest, 1u)] = ray;
   }
 }

@@ -40,12 +40,12 @@ bool chart_reaches(ivec2 texel, vec3 p, vec3 away) {
 
 // Whether a surface leaves the receiver's plane between p and the place `away` from it: one that rises from it, or any.
 // `near`: the receiver's two nearest walls, and the distances of the first and of the third, as bits [m].
-bool wall_between(uvec4 near, uint triangle, vec3 p, vec3 away, vec3 face, float margin, bool rising_only) {
-  const float reach = length(away) + margin;
+bool wall_between(uvec4 near, uint triangle, vec3 p, vec3 away, vec3 face, Blur blur, bool rising_only) {
+  const float reach = length(away) + most_blur(blur);
   if (reach < uintBitsToFloat(near.z)) return false;
-  if (is_between(near.x, p, away, face, margin, rising_only)) return true;
-  if (reach < uintBitsToFloat(near.w)) return is_between(near.y, p, away, face, margin, rising_only);
+  if (is_between(near.x, p, away, face, blur, rising_only)) return true;
+  if (reach < uintBitsToFloat(near.w)) return is_between(near.y, p, away, face, blur, rising_only);
   for (uint wall = walls_first[triangle]; wall < walls_first[triangle + 1u]; ++wall)
-    if (is_between(wall, p, away, face, margin, rising_only)) return true;
+    if (is_between(wall, p, away, face, blur, rising_only)) return true;
   return false;
 }

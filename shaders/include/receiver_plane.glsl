@@ -12,8 +12,21 @@ const float SUBPIXEL = 1.0 / 256.0;
 const float ROUNDING = 1e-5;
 float receiver_tolerance(vec2 slope, float pixel) { return SUBPIXEL * pixel * (abs(slope.x) + abs(slope.y)) + ROUNDING; }
 
-// How near a wall the rasteriser may have put a pixel's centre on either side [m]; `scale`: of PSF coordinates to metres
-// along the receiver's plane.
-float wall_margin(float pixel_width, float scale) { return 2.0 * SUBPIXEL * pixel_width / scale; }
+// How far the rasteriser may have put a centre from its place in the receiver's plane: `snapped` across the view [m], and
+// farther the more a direction in the plane leads along the light. `travel`: of the light; scale: of metres to PSF
+// coordinates.
+struct Blur {
+  float snapped;
+  vec3 steep;
+};
+Blur blur_of(float pixel_width, float scale, vec3 travel, float face_cosine) {
+  return Blur(2.0 * SUBPIXEL * pixel_width / scale, travel / face_cosine);
+}
+// In a direction in the plane (unit); in any.
+float blur_along(vec3 direction, Blur blur) {
+  const float rise = dot(direction, blur.steep);
+  return blur.snapped * sqrt(1.0 + rise * rise);
+}
+float most_blur(Blur blur) { return blur.snapped * length(blur.steep); }
 
 #endif

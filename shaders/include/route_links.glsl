@@ -22,7 +22,8 @@ void route(uint me, uint index, Region region) {
       receiver_depth(shift, sight.depth, sight.slope) + receiver_tolerance(sight.slope, pixel_width);
   const int link = nearest_in_front(sight.nearest, region, sight.sign, limit, wanted && lit);
   const float reach =
-      length(away_to(shift, sight, region)) + wall_margin(pixel_width, sight.face_cosine * sight.scale);
+      length(away_to(shift, sight, region)) +
+      most_blur(blur_of(pixel_width, sight.scale, sight.travel, sight.face_cosine));
   if (!wanted) return;
   if (!lit || link >= 0)
     put_link(uint(region.place.z) - constants.first_pair, me, lit ? uint(link) : UNKNOWN(constants.texels));

@@ -14,7 +14,7 @@ void route(uint me, Region region) {
   const Sight sight = look(place.xyz, face, region);
   const float pixel_width = 2.0 / float(constants.size);
   const float tolerance = receiver_tolerance(sight.slope, pixel_width);
-  const float margin = wall_margin(pixel_width, sight.face_cosine * sight.scale);
+  const Blur blur = blur_of(pixel_width, sight.scale, sight.travel, sight.face_cosine);
   int link = -1;
   bool known = false;
   // As in stencil_routing: of the 2 x 2 pixels the nearest that tells what the texel sees.
@@ -23,7 +23,7 @@ void route(uint me, Region region) {
         clamp(sight.nearest + beside_nearest(choice % 4u, sight.within), ivec2(0), ivec2(constants.size) - 1);
     const vec2 shift = shift_to(pixel, sight);
     const vec3 away = away_to(shift, sight, region);
-    if (wall_between(receiver.near, uint(receiver.face_and_triangle.a), place.xyz, away, face, margin, choice >= 4u))
+    if (wall_between(receiver.near, uint(receiver.face_and_triangle.a), place.xyz, away, face, blur, choice >= 4u))
       continue;
     known = true;
     const float limit = receiver_depth(shift, sight.depth, sight.slope) + tolerance;

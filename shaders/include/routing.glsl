@@ -44,7 +44,7 @@ void main() {
   const float tolerance = receiver_tolerance(slope, pixel_width);
   const uvec4 near = imageLoad(near_walls, texel);
   const uint triangle = uint(face_and_triangle.a);
-  const float margin = wall_margin(pixel_width, face_cosine * length(view.along.xyz));
+  const Blur blur = blur_of(pixel_width, length(view.along.xyz), view.direction.xyz, face_cosine);
   bool known = false, in_contact = false;
   vec3 radiance = vec3(0.0);
   bool missed = true;
@@ -56,7 +56,7 @@ void main() {
     const float own_depth = receiver_depth(centre - projected, depth, slope);
     const vec3 away = (right * (centre.x - projected.x) + up * (centre.y - projected.y) +
                        view.direction.xyz * (own_depth - depth)) / length(view.along.xyz);
-    if (wall_between(near, triangle, p.xyz, away, face, margin, choice >= 4u)) continue;
+    if (wall_between(near, triangle, p.xyz, away, face, blur, choice >= 4u)) continue;
     known = true;
     const uint layer = last_in_front(pixel, constants.size, own_depth + tolerance);
     if (layer < LAYERS) {
