@@ -27,7 +27,7 @@ const gap = 12;
 /** As `serve` shows it while something moves: with all bounces, of which one is new in each map. */
 const moving = ['--size', '256', '--psf', '384'];
 /** Metres from the left wall at which the strip's pictures are taken, and the part of the page that they show. */
-const stripAt = [0, 0.8, 1.6, 2.4];
+const stripAt = [0, 0.6, 1.2, 1.8];
 const stripClip = { x: 100, y: 170, width: 400, height: 380 };
 
 // Without a note of the command line, which would hold this machine's paths.
@@ -134,6 +134,7 @@ async function drawMovingCube() {
     };
     await hold('ArrowDown', standsStill());
     await hold('ArrowLeft', standsStill());
+    await second.page.keyboard.press('?'); // the keys away
     await second.settledMap();
     const from = (await second.knows()).places[0].x;
     const pictures = [];
