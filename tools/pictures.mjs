@@ -24,7 +24,7 @@ const shownPsf = 188;
 /** Bytes: pictures travel with every clone. */
 const largest = 300_000;
 const gap = 12;
-/** As `serve` shows it while something moves: with all bounces, of which one is new in each map. */
+/** As `serve` shows it while something moves: with the light of all bounces, each map a step on. */
 const moving = ['--size', '256', '--psf', '384'];
 /** Metres from the left wall at which the strip's pictures are taken, and the part of the page that they show. */
 const stripAt = [0, 0.6, 1.2, 1.8];

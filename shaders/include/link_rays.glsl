@@ -1,5 +1,5 @@
-// Rays of texels along a pair's two directions, and the A-buffer of texel numbers that they look into. Included by a
-// shader that declares `table` at binding 9 and put_link(index of the pair in the chunk, texel, link).
+// Rays of texels along a pair's two directions, and the A-buffer of texel numbers that they look into. Bindings 3, 6 to 9,
+// 11 are of the shaders that include it: `table` at 9, with put_link(index of the pair in the chunk, texel, link).
 
 layout(local_size_x_id = 1) in;  // a tile
 layout(binding = 0) readonly buffer Layers { uvec2 layers[]; };
@@ -38,10 +38,11 @@ Sight look(vec3 place, vec3 face, Region region) {
   Sight sight;
   sight.projected = vec2(dot(view.right, p), dot(view.up, p));
   const vec2 in_pixels = (sight.projected * 0.5 + 0.5) * size;
-  sight.nearest = ivec2(in_pixels);
+  const ivec2 last = ivec2(size) - 1;
+  sight.nearest = clamp(ivec2(in_pixels), ivec2(0), last);
   sight.within = in_pixels - vec2(sight.nearest) - 0.5;
   const ivec2 first = sight.nearest + ivec2(sight.within.x < 0.0 ? -1 : 0, sight.within.y < 0.0 ? -1 : 0);
-  const ivec2 last = ivec2(size) - 1, low = clamp(first, ivec2(0), last), high = clamp(first + 1, ivec2(0), last);
+  const ivec2 low = clamp(first, ivec2(0), last), high = clamp(first + 1, ivec2(0), last);
   sight.inside =
       all(greaterThanEqual(low, region.rect.xy)) && all(lessThan(high, region.rect.xy + region.rect.zw));
   sight.sign = dot(face, view.direction.xyz) > 0.0 ? -1.0 : 1.0;

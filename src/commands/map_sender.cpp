@@ -19,7 +19,7 @@ MapSender::~MapSender() {
 
 void MapSender::wait() {
   std::unique_lock lock(mutex_);
-  changed_.wait(lock, [&] { return (!next_ && !busy_) || failure_; });
+  changed_.wait(lock, [&] { return !next_ || failure_; });
   if (failure_) std::rethrow_exception(failure_);
 }
 
@@ -37,7 +37,7 @@ void MapSender::run() {
     changed_.wait(lock, [&] { return next_ || stopped_; });
     if (stopped_) return;
     auto picture = std::exchange(next_, std::nullopt);
-    busy_ = true;
+    changed_.notify_all();
     lock.unlock();
     std::exception_ptr failure;
     try {
@@ -47,7 +47,6 @@ void MapSender::run() {
       failure = std::current_exception();
     }
     lock.lock();
-    busy_ = false;
     failure_ = failure;
     changed_.notify_all();
     if (failure) return;

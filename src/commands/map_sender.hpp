@@ -24,7 +24,7 @@ class MapSender {
   MapSender(const MapSender&) = delete;
   MapSender& operator=(const MapSender&) = delete;
 
-  // Returns once a map would be begun at once: input that is taken before then would only grow old in line.
+  // Returns once the one before has been begun: input that is taken before then would only grow old in line.
   // Throws what encoding the one before has thrown.
   void wait();
 
@@ -44,7 +44,7 @@ class MapSender {
   std::mutex mutex_;  // guards what follows
   std::condition_variable changed_;
   std::optional<Picture> next_;
-  bool busy_ = false, stopped_ = false;
+  bool stopped_ = false;
   std::exception_ptr failure_;
   std::jthread thread_;  // last: it uses the rest
 };

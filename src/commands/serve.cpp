@@ -32,7 +32,7 @@ constexpr auto budget_a_map = 33ms;
 // comes between.
 constexpr std::uint32_t bounces_to_settle = 10;
 constexpr std::size_t cubes_of_players = 2;
-// While nothing moves, pairs of directions that are routed again every half second, until all have been.
+// While nothing moves, pairs of directions that are routed again every second, until all have been.
 constexpr std::uint32_t pairs_a_check = 2;
 
 struct ServeOptions {
@@ -119,14 +119,14 @@ class Light {
   bool settled_ = false, warned_ = false;
 };
 
-// Input, place, update, encode, send: each stage has a thread of its own but for input and update, which are
-// this one. Ends when it is told to, or when signaling refuses the server.
+// Input and update; moves are placed and maps are sent on the server's thread, and encoded on the sender's.
+// Ends when it is told to, or when signaling refuses the server.
 void run_pipeline(Light& light, PlaceInbox& inbox, MapSender& sender, const stream::Server& server,
                   WorkLog& log, Places places, Clock::duration shortest) {
   while (!inbox.stopped() && server.refused().empty()) {
     const auto start = Clock::now();
     sender.wait();
-    const auto news = inbox.take(light.settled() ? 500ms : 0ms);
+    const auto news = inbox.take(light.settled() ? 1s : 0s);
     if (news) {
       log.add("input", Clock::now() - news->came);
       places = news->places;
@@ -134,8 +134,8 @@ void run_pipeline(Light& light, PlaceInbox& inbox, MapSender& sender, const stre
       light.check();
       continue;
     }
-    // After a step one bounce, so that the next step is shown soon; while nothing moves what is left, but no
-    // longer than until somebody moves again.
+    // After a step as little as --step-bounces says, so that the next step is shown soon; while nothing moves
+    // what is left, but no longer than until somebody moves again.
     const bool waits = !news.has_value();
     auto map = light.update(places, [&](std::uint32_t bounces) {
       return !waits || bounces >= bounces_to_settle || inbox.has_news();
@@ -208,6 +208,11 @@ void add_serve(CLI::App& application) {
   add_device_options(*command, options->device);
   command->callback([options, command] {
     choose_method(*command, options->method);
+    for (const char* option : {"--step-bounces", "--radiance"})
+      if (command->count(option) > 0 && (options->method != Method::links || options->settings.bounces))
+        throw UsageError(
+            std::string(option) +
+            " is for --method links with --bounces auto, whose light goes on where it was; leave it out");
     if (options->method == Method::links && (command->count("--abuffer") > 0 || command->count("--sort") > 0))
       throw UsageError("--abuffer and --sort mean nothing to --method links; leave them out");
     options->chosen_quality =

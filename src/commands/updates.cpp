@@ -40,7 +40,7 @@ std::string known(double value) {
 }
 
 // As serve has it while things move: the light of further bounces follows in the next steps.
-bool after_one_bounce(std::uint32_t) {
+bool after_the_step(std::uint32_t) {
   return true;
 }
 
@@ -52,7 +52,7 @@ UpdateRow run_walk(const gpu::Device& device, const scene::Scene& scene, UpdateR
   const auto before = solver->times();
   for (std::size_t step = 0; step < steps; ++step) {
     const auto start = Clock::now();
-    solver->update(places[step], after_one_bounce);
+    solver->update(places[step], after_the_step);
     row.ms.push_back(std::chrono::duration<double, std::milli>(Clock::now() - start).count());
   }
   row.passes = solver->times();

@@ -12,7 +12,7 @@
 namespace lichtveld::commands {
 
 // A map's way: input (a move waits for the loop), place (where the cube gets), update (its light, and reading
-// it back), encode, send (stream::Server's own). Thread-safe: each stage runs on a thread of its own.
+// it back), encode, send (stream::Server's own). Thread-safe: stages run on several threads.
 class WorkLog {
  public:
   using Duration = std::chrono::duration<double>;

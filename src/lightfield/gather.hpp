@@ -1,7 +1,7 @@
 // gather: one bounce over kept links, E = pi * sum w L[link] / sum w (thesis, section 4.6, the order of the
-// loops turned round: texels outside, directions inside), then L = Le + albedo / pi * E, packed for the next
-// bounce. Reads the link table and packed radiance; writes total_irradiance and half_difference. Costs links: a
-// load of half a word and one of a word each.
+// loops turned round: texels outside, directions inside), then L = Le + albedo / pi * E, packed and in
+// full, for the next bounce. Reads the link table and radiance; writes total_irradiance and half_difference.
+// Costs links: a load of half a word and one or three of a word each.
 #pragma once
 
 #include <array>

@@ -15,6 +15,7 @@ constexpr float reach = 1.02f;
 // A workgroup's: to start one costs a CPU device as much as to route some texels, and a GPU wants thousands of
 // them.
 constexpr std::uint32_t tiles_a_job = 16;
+constexpr std::size_t most_jobs = 65535;  // of a batch: every device can start that many
 
 glm::vec2 in_pixels(const shaders::PsfView& view, const glm::vec3& point, float pixels) {
   const glm::vec4 p(point, 1);
@@ -63,6 +64,16 @@ bool meet(const std::vector<Slab>& slabs, const TileBoxes::Tile& tile) {
   });
 }
 
+std::vector<std::uint32_t> tiles_in(const std::vector<Slab>& slabs, const TileBoxes& tiles) {
+  std::vector<std::uint32_t> found;
+  for (const auto& group : tiles.groups) {
+    if (!meet(slabs, group.around)) continue;
+    for (std::uint32_t tile = group.first; tile < group.end; ++tile)
+      if (meet(slabs, tiles.tiles[tile])) found.push_back(tile);
+  }
+  return found;
+}
+
 }  // namespace
 
 Part whole(const shaders::PsfView& view, std::uint32_t pair, std::uint32_t pixels) {
@@ -104,7 +115,11 @@ std::vector<RegionBatch> pack(const std::vector<Part>& parts, const StoreExtent&
       corner = {0, corner.y + row_height};
       row_height = 0;
     }
-    if (batches.empty() || corner.y + extent.y > height) {
+    const auto found = tiles_in(slabs, tiles);
+    // Of one region there may be more than that, then of more tiles each.
+    const auto each = std::max<std::size_t>(tiles_a_job, (found.size() + most_jobs - 1) / most_jobs),
+               jobs = (found.size() + each - 1) / each;
+    if (batches.empty() || corner.y + extent.y > height || batches.back().jobs.size() + jobs > most_jobs) {
       batches.emplace_back();
       corner = glm::ivec2(0);
       row_height = 0;
@@ -117,15 +132,11 @@ std::vector<RegionBatch> pack(const std::vector<Part>& parts, const StoreExtent&
     batch.rows = static_cast<std::uint32_t>(corner.y + row_height);
     const auto index = static_cast<std::uint32_t>(batch.regions.size());
     batch.regions.push_back(region);
-    const auto first = static_cast<std::uint32_t>(batch.tiles.size());
-    for (const auto& group : tiles.groups) {
-      if (!meet(slabs, group.around)) continue;
-      for (std::uint32_t tile = group.first; tile < group.end; ++tile)
-        if (meet(slabs, tiles.tiles[tile])) batch.tiles.push_back(tile);
-    }
-    const auto end = static_cast<std::uint32_t>(batch.tiles.size());
-    for (auto begin = first; begin < end; begin += tiles_a_job)
-      batch.jobs.push_back({index, begin, std::min(begin + tiles_a_job, end)});
+    const auto first = batch.tiles.size();
+    batch.tiles.insert(batch.tiles.end(), found.begin(), found.end());
+    for (auto begin = first; begin < batch.tiles.size(); begin += each)
+      batch.jobs.push_back({index, static_cast<std::uint32_t>(begin),
+                            static_cast<std::uint32_t>(std::min(begin + each, batch.tiles.size()))});
   }
   return batches;
 }

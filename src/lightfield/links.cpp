@@ -261,7 +261,7 @@ std::vector<std::uint32_t> Links::Parts::in_contact(const std::vector<glm::vec3>
 
 void Links::Parts::route(const std::vector<Part>& parts, const TileBoxes& tiles) {
   const auto pixels = settings.raster();
-  const auto overflow_before = solution.overflow_pixels;
+  const auto before = solution;
   auto batches = pack(parts, layered->store.extent, tiles);
   bool placed = false;  // the texels, in this store's buffers
   for (std::size_t batch = 0; batch < batches.size();) {
@@ -289,7 +289,9 @@ void Links::Parts::route(const std::vector<Part>& parts, const TileBoxes& tiles)
       batches = pack(parts, layered->store.extent, tiles);
       batch = 0;
       placed = false;
-      solution.overflow_pixels = overflow_before;
+      solution.overflow_pixels = before.overflow_pixels;
+      solution.misses = before.misses;
+      solution.rays_unknown = before.rays_unknown;
       continue;
     }
     solution.misses += counted.misses;
@@ -358,6 +360,7 @@ void Links::Parts::half_bounce() {
   gather->bounce(frame, map, *table, settings.radiance, {next_half});
   frame.submit_and_wait();
   next_half = 1 - next_half;
+  solution.residual = std::numeric_limits<double>::infinity();
   ++solution.bounces;
 }
 
@@ -379,8 +382,12 @@ void Links::Parts::converge(const std::function<bool(std::uint32_t)>& enough) {
   double least = std::numeric_limits<double>::infinity();
   std::uint32_t since = 0;
   do {
-    // Packed radiance flickers in its last digits, and would not let light settle.
-    bounce(solution.bounces < asked ? settings.radiance : Radiance::full);
+    // Packed radiance flickers in its last digits: light does not settle by it.
+    if (solution.bounces < asked && settings.radiance == Radiance::packed) {
+      bounce(Radiance::packed);
+      continue;
+    }
+    bounce();
     since = solution.residual < least ? 0 : since + 1;
     least = std::min(least, solution.residual);
     solution.settled = solution.residual < converged || since == patience || solution.bounces == most_bounces;

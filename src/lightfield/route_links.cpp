@@ -179,10 +179,10 @@ void RouteLinks::record(gpu::Frame& frame, const RegionBatch& batch, const Geome
   put(device_, regions_, batch.regions);
   put(device_, jobs_, batch.jobs);
   put(device_, tiles_, batch.tiles);
-  const auto rays = batch.tiles.size() * table.tile * sizeof(glm::uvec2);
+  const auto bytes = batch.tiles.size() * table.tile * sizeof(glm::uvec2);
   for (auto* list : {&doubts_, &rest_})
-    if (rays > list->size())
-      *list = gpu::Buffer(device_, list->name(), rays, vk::BufferUsageFlagBits::eStorageBuffer);
+    if (bytes > list->size())
+      *list = gpu::Buffer(device_, list->name(), bytes, vk::BufferUsageFlagBits::eStorageBuffer);
 
   frame.clear("emit_links", store.filled);
   const std::vector bindings = {gpu::reads(geometry.offsets), gpu::reads(regions_), gpu::reads(table.number),

@@ -7,6 +7,7 @@ namespace lichtveld::stream {
 void Outbox::offer(std::shared_ptr<const Map> map) {
   if (newest_) ++counts_.skipped;
   newest_ = std::move(map);
+  newest_came_ = Clock::now();
 }
 
 void Outbox::repeat_places(const std::string& otherwise) {
@@ -25,6 +26,7 @@ void Outbox::pump() {
       send_map_part();
     } else if (newest_) {
       current_ = std::exchange(newest_, nullptr);
+      current_came_ = newest_came_;
       offset_ = 0;
       due_ = shown_ = current_->places;
       shows_map_ = true;
@@ -43,7 +45,7 @@ void Outbox::send_map_part() {
   const auto chunk = chunk_at(current_->png, offset_);
   if (chunk.empty()) {
     send_text(std::string(map_complete));
-    counts_.sending += Clock::now() - current_->published;
+    counts_.sending += Clock::now() - current_came_;
     current_.reset();
     ++counts_.maps;
     return;

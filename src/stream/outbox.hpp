@@ -15,12 +15,11 @@ namespace lichtveld::stream {
 struct Map {
   std::vector<std::uint8_t> png;
   std::string places;  // as sent (protocol.hpp); empty without cubes
-  std::chrono::steady_clock::time_point published = {};
 };
 
 struct SentCounts {
   std::uint64_t maps = 0, skipped = 0, bytes = 0;
-  std::chrono::duration<double> sending{};  // of the maps, each from its publication on
+  std::chrono::duration<double> sending{};  // of the maps, each from offer() on
 };
 
 // Sends only while the channel's queue is empty, so that at most one chunk and one places message wait there: a
@@ -55,8 +54,9 @@ class Outbox {
 
   std::shared_ptr<rtc::DataChannel> channel_;
   std::shared_ptr<const Map> newest_, current_;  // waiting; in transit
-  std::size_t offset_ = 0;                       // bytes of current_ that are sent
-  std::string due_, shown_;                      // places
+  Clock::time_point newest_came_, current_came_;
+  std::size_t offset_ = 0;   // bytes of current_ that are sent
+  std::string due_, shown_;  // places
   bool shows_map_ = false;
   Clock::time_point last_empty_ = Clock::now();
   SentCounts counts_;

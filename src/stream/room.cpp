@@ -47,8 +47,7 @@ void Server::Room::run() {
 
 void Server::Room::publish(std::vector<std::uint8_t> png, const std::vector<Place>& places) {
   if (png.empty()) throw std::invalid_argument("the published map has no bytes");
-  auto map =
-      std::make_shared<const Map>(Map{std::move(png), format_places(places), std::chrono::steady_clock::now()});
+  auto map = std::make_shared<const Map>(Map{std::move(png), format_places(places)});
   asio::post(io_, [this, map = std::move(map)] {
     newest_ = map;
     for (auto& [number, guest] : guests_) {
@@ -70,6 +69,11 @@ std::string Server::Room::refused() const {
 }
 
 void Server::Room::tick() {
+  // First: whatever fails below, the next one comes.
+  tick_.expires_after(limits::places_interval);
+  tick_.async_wait([this](boost::system::error_code error) {
+    if (!error) tick();
+  });
   const auto now = std::chrono::steady_clock::now();
   const std::string places = format_places(session_.places());
   for (auto it = guests_.begin(); it != guests_.end();) {
@@ -84,16 +88,13 @@ void Server::Room::tick() {
     if (now - peer.outbox().last_empty() > limits::stall_time) drop(guest, "it takes nothing any more");
   }
   report();
-  tick_.expires_after(limits::places_interval);
-  tick_.async_wait([this](boost::system::error_code error) {
-    if (!error) tick();
-  });
 }
 
 void Server::Room::report() {
+  const auto now = statistics();
+  if (!now.signaling_connected) return;
   Work work;
   if (options_.work) work = options_.work();
-  const auto now = statistics();
   work.stages.push_back({"send", now.maps_sent, now.seconds_sending});
   for (const auto& [name, value] : {std::pair("maps_sent", now.maps_sent),
                                     {"maps_skipped", now.maps_skipped},
@@ -101,7 +102,7 @@ void Server::Room::report() {
                                     {"moves_blocked", now.moves_blocked},
                                     {"messages_refused", now.messages_refused}})
     work.counts.push_back({name, value});
-  if (!now.signaling_connected || work == reported_) return;
+  if (work == reported_) return;
   reported_ = work;
   signaling_.send(work_signal(work));
 }

@@ -59,6 +59,11 @@ INSTANTIATE_TEST_SUITE_P(
                    " --signaling ws://127.0.0.1:1/server --token-file nowhere",
                2,
                {"0.7", "0.5", "whole"}},
+        BadUse{"StepBouncesOfThesis",
+               "serve --method thesis --step-bounces 1 --scene " + cornell +
+                   " --signaling ws://127.0.0.1:1/server --token-file nowhere",
+               2,
+               {"--step-bounces", "links", "leave it out"}},
         BadUse{"Radiance",
                "serve --radiance thick --scene " + cornell +
                    " --signaling ws://127.0.0.1:1/server --token-file nowhere",

@@ -9,8 +9,10 @@ import type { Role, SceneOffer } from './signaling';
 import { MapStatistics } from './statistics';
 import { View } from './view';
 
-/** Milliseconds that a frame counts for at most: of a pause before it nothing is made up for. */
-const longestFrameMs = 20;
+/** Milliseconds that a frame counts for at most: what a page that was stopped has missed is not made up for. */
+const longestFrameMs = 100;
+/** Milliseconds that the first frame after a pause counts for. */
+const usualFrameMs = 20;
 
 const view = new View();
 const statistics = new MapStatistics();
@@ -112,7 +114,7 @@ function start(room: Room): void {
   let asked = false;
   const frame = (now: number): void => {
     asked = false;
-    const ms = Math.max(0, now - last);
+    const ms = Math.min(Math.max(0, now - last), longestFrameMs);
     last = now;
     controls.advance(ms);
     if (room.draw(ms)) view.placeLabel(room.ownLabelPlace());
@@ -120,7 +122,7 @@ function start(room: Room): void {
   room.onInvalid = () => {
     if (asked) return;
     asked = true;
-    last = Math.max(last, performance.now() - longestFrameMs);
+    last = Math.max(last, performance.now() - usualFrameMs);
     requestAnimationFrame(frame);
   };
   room.invalidate();

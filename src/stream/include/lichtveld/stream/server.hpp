@@ -66,7 +66,7 @@ struct ServerStatistics {
   // Maps sent whole (to the WebRTC library), and maps that a peer was too slow for; a map to two peers counts
   // twice.
   std::uint64_t maps_sent = 0, maps_skipped = 0, bytes_sent = 0;
-  double seconds_sending = 0;                  // of the maps sent, each from publish() on
+  double seconds_sending = 0;                  // of the maps sent, each from when its peer could have it
   std::uint64_t moves = 0, moves_blocked = 0;  // blocked: at a wall or a cube, or asked for by a watcher
   // Messages (of clients and through signaling), channels and offers that were not understood, too long or too
   // many.
