@@ -3,6 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_ARB_shader_viewport_layer_array : require
 #include "shared.h"
+#include "receiver_plane.glsl"
 
 layout(location = 0) in vec3 position;
 layout(location = 2) in vec2 atlas;
@@ -11,9 +12,6 @@ layout(location = 4) in uint body;
 layout(push_constant) uniform Push { EmitLinksConstants constants; };
 layout(binding = 0) readonly buffer Offsets { vec4 offsets[]; };  // of each body [m]
 layout(binding = 1) readonly buffer Regions { Region regions[]; };
-
-// Of a pixel: Vulkan's usual subPixelPrecisionBits.
-const float SUBPIXELS = 256.0;
 
 layout(location = 0) out vec2 atlas_coordinate;
 layout(location = 1) out float psf_depth;
@@ -25,7 +23,7 @@ void main() {
   atlas_coordinate = atlas;
   psf_depth = dot(region.view.along, p);
   // To where the rasteriser would snap it anyway: so that a region looks the same wherever it lies in the store.
-  const float steps = SUBPIXELS * 0.5 * float(constants.size);
+  const float steps = 0.5 * float(constants.size) / SUBPIXEL;
   const vec2 projected = vec2(dot(region.view.right, p), dot(region.view.up, p));
   gl_Position = vec4(round((projected + 1.0) * steps) / steps - 1.0, 0.5, 1.0);
   gl_ViewportIndex = int(uint(gl_InstanceIndex) % constants.windows);

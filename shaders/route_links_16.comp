@@ -4,13 +4,5 @@
 #extension GL_EXT_shader_16bit_storage : require
 #include "shared.h"
 #include "links.glsl"
-
-// Two pairs share a word, so that a bounce loads both at once.
-layout(binding = 9) buffer Table { uint16_t table[]; };
-void put_link(uint pair, uint texel, uint link);
-
+#include "put_link_16.glsl"
 #include "route_links.glsl"
-
-void put_link(uint pair, uint texel, uint link) {
-  table[2u * ((pair / 2u) * constants.texels + texel) + pair % 2u] = uint16_t(link);
-}

@@ -41,9 +41,10 @@ const fieldsOf = {
 const isAnyCount = (value) => isCount(value, Number.MAX_SAFE_INTEGER);
 
 /** The members of each entry of a report of work, each with its check. */
+const timed = { runs: isAnyCount, seconds: (v) => Number.isFinite(v) && v >= 0 };
 const workFields = {
-  stages: { runs: isAnyCount, seconds: (v) => Number.isFinite(v) && v >= 0 },
-  passes: { runs: isAnyCount, seconds: (v) => Number.isFinite(v) && v >= 0 },
+  stages: timed,
+  passes: timed,
   counts: { value: isAnyCount },
 };
 

@@ -26,7 +26,8 @@ void route(uint me, uint index, Region region) {
       most_blur(blur_of(pixel_width, sight.scale, sight.travel, sight.face_cosine));
   if (!wanted) return;
   if (!lit || link >= 0)
-    put_link(uint(region.place.z) - constants.first_pair, me, lit ? uint(link) : UNKNOWN(constants.texels));
+    put_link(uint(region.place.z) - constants.first_pair, me, lit ? uint(link) : UNKNOWN(constants.texels),
+             constants.texels);
   if (lit && (link < 0 || reach >= uintBitsToFloat(receiver.near.z)))
     doubts[atomicAdd(counters.doubts, 1u)] = uvec2(me, link < 0 ? index | NOTHING_SEEN : index);
 }

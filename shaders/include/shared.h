@@ -106,10 +106,10 @@ struct RouteJob {
 };
 
 struct EmitLinksConstants {
-  uint size;                       // of a pair's raster [pixels]
-  uint store_width, store_height;  // [pixels]
-  uint capacity;                   // layers that a pixel has room for
-  uint windows;                    // regions that are drawn at once
+  uint size;  // of a pair's raster [pixels]
+  uint store_width, store_pixels;
+  uint capacity;  // layers that a pixel has room for
+  uint windows;   // regions that are drawn at once
 };
 
 struct CountLayersConstants {

@@ -185,9 +185,6 @@ std::string name_of(Method method) {
 std::string name_of(Sort sort) {
   return key_of(sorts, sort);
 }
-std::string name_of(lightfield::Radiance radiance) {
-  return key_of(radiances, radiance);
-}
 std::string name_of(Weights weights) {
   return key_of(all_weights, weights);
 }

@@ -63,7 +63,6 @@ void add_bounces_option(CLI::App& command, lightfield::Settings& settings);
 std::string name_of(lightfield::ABuffer abuffer);
 std::string name_of(lightfield::Sort sort);
 std::string name_of(lightfield::Weights weights);
-std::string name_of(lightfield::Radiance radiance);
 std::string name_of(Method method);
 
 }  // namespace lichtveld::commands

@@ -1,6 +1,7 @@
 #include "link_regions.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -22,15 +23,21 @@ glm::vec2 in_pixels(const shaders::PsfView& view, const glm::vec3& point, float 
   return (glm::vec2(glm::dot(view.right, p), glm::dot(view.up, p)) * 0.5f + 0.5f) * pixels;
 }
 
-glm::vec3 corner_of(const scene::Box& box, int corner) {
-  return {corner & 1 ? box.max.x : box.min.x, corner & 2 ? box.max.y : box.min.y,
-          corner & 4 ? box.max.z : box.min.z};
+// The corners of a box where it is and at the end of its way.
+std::array<glm::vec3, 16> swept_corners(const scene::Box& box, const glm::vec3& way) {
+  std::array<glm::vec3, 16> corners;
+  for (int corner = 0; corner < 8; ++corner) {
+    corners[corner] = {corner & 1 ? box.max.x : box.min.x, corner & 2 ? box.max.y : box.min.y,
+                       corner & 4 ? box.max.z : box.min.z};
+    corners[corner + 8] = corners[corner] + way;
+  }
+  return corners;
 }
 
 // A box in all places of its way projects to a polygon whose sides run along its edges and its way: it is the
 // intersection of as many slabs. One for an edge that is seen as a point bounds nothing and is left out.
 std::vector<Slab> slabs_around(const shaders::PsfView& view, float pixels, const scene::Box& box,
-                               const glm::vec3& way) {
+                               const glm::vec3& way, const std::array<glm::vec3, 16>& corners) {
   const glm::vec3 right = glm::vec3(view.right) * pixels / 2.0f, up = glm::vec3(view.up) * pixels / 2.0f;
   const glm::vec3 extent = box.max - box.min;
   std::vector<Slab> slabs;
@@ -43,12 +50,11 @@ std::vector<Slab> slabs_around(const shaders::PsfView& view, float pixels, const
     Slab slab{.normal = unit.x * right + unit.y * up,
               .low = std::numeric_limits<float>::max(),
               .high = std::numeric_limits<float>::lowest()};
-    for (int corner = 0; corner < 8; ++corner)
-      for (const float share : {0.0f, 1.0f}) {
-        const float at = glm::dot(slab.normal, corner_of(box, corner) + share * way);
-        slab.low = std::min(slab.low, at);
-        slab.high = std::max(slab.high, at);
-      }
+    for (const auto& corner : corners) {
+      const float at = glm::dot(slab.normal, corner);
+      slab.low = std::min(slab.low, at);
+      slab.high = std::max(slab.high, at);
+    }
     const float beside = reach * (std::abs(unit.x) + std::abs(unit.y));
     slab.low -= beside;
     slab.high += beside;
@@ -84,13 +90,13 @@ Part whole(const shaders::PsfView& view, std::uint32_t pair, std::uint32_t pixel
 Part changed(const shaders::PsfView& view, std::uint32_t pair, std::uint32_t pixels, const scene::Box& before,
              const glm::vec3& way) {
   const auto side = static_cast<float>(pixels);
+  const auto corners = swept_corners(before, way);
   glm::vec2 low(side), high(0);
-  for (int corner = 0; corner < 8; ++corner)
-    for (const float share : {0.0f, 1.0f}) {
-      const auto at = in_pixels(view, corner_of(before, corner) + share * way, side);
-      low = glm::min(low, at);
-      high = glm::max(high, at);
-    }
+  for (const auto& corner : corners) {
+    const auto at = in_pixels(view, corner, side);
+    low = glm::min(low, at);
+    high = glm::max(high, at);
+  }
   // Of a texel that is as far off, the pixels whose centres lie around it.
   const auto inside = [&](const glm::vec2& at) {
     return glm::clamp(glm::ivec2(glm::floor(at)), glm::ivec2(0), glm::ivec2(pixels));
@@ -98,7 +104,7 @@ Part changed(const shaders::PsfView& view, std::uint32_t pair, std::uint32_t pix
   const glm::ivec2 first = inside(low - reach - 1.5f), end = glm::max(first, inside(high + reach + 0.5f) + 1);
   const auto last = glm::min(end, glm::ivec2(pixels));
   return {{.view = view, .rect = {first, last - first}, .place = {0, 0, static_cast<int>(pair), 0}},
-          slabs_around(view, side, before, way)};
+          slabs_around(view, side, before, way, corners)};
 }
 
 std::vector<RegionBatch> pack(const std::vector<Part>& parts, const StoreExtent& store,
@@ -139,6 +145,21 @@ std::vector<RegionBatch> pack(const std::vector<Part>& parts, const StoreExtent&
                             static_cast<std::uint32_t>(std::min(begin + each, batch.tiles.size()))});
   }
   return batches;
+}
+
+std::vector<std::uint32_t> groups_beside(const std::vector<scene::Box>& boxes, float gap,
+                                         const TileBoxes& tiles) {
+  std::vector<std::uint32_t> found;
+  for (std::uint32_t group = 0; group < tiles.groups.size(); ++group) {
+    const auto& [centre, half] = tiles.groups[group].around;
+    const glm::vec3 low = centre - half, high = centre + half;
+    if (std::any_of(boxes.begin(), boxes.end(), [&](const scene::Box& box) {
+          return glm::all(glm::lessThanEqual(box.min - gap, high)) &&
+                 glm::all(glm::lessThanEqual(low, box.max + gap));
+        }))
+      found.push_back(group);
+  }
+  return found;
 }
 
 }  // namespace lichtveld::lightfield

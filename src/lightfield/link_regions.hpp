@@ -46,4 +46,8 @@ struct RegionBatch {
 // Regions of at most the store's extent each; those of a batch keep the order of their pairs.
 std::vector<RegionBatch> pack(const std::vector<Part>& parts, const StoreExtent& store, const TileBoxes& tiles);
 
+// The groups of tiles that meet any of these boxes, or come within `gap` of it [m].
+std::vector<std::uint32_t> groups_beside(const std::vector<scene::Box>& boxes, float gap,
+                                         const TileBoxes& tiles);
+
 }  // namespace lichtveld::lightfield

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 #include <limits>
+#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -117,12 +118,11 @@ struct Links::Parts {
   void link(const std::vector<glm::vec3>& to);
   std::vector<Part> to_link(const std::vector<glm::vec3>& to, bool all) const;
   void route(const std::vector<Part>& parts, const TileBoxes& tiles);
-  std::vector<std::uint32_t> in_contact(const std::vector<glm::vec3>& to, bool all,
-                                        const TileBoxes& tiles) const;
+  std::vector<scene::Box> moved_boxes(const std::vector<glm::vec3>& to) const;
   void find_cover(const std::vector<std::uint32_t>& groups);
   LinkCheck check_two();
   void start();
-  void bounce(Radiance radiance = Radiance::full);
+  void bounce(Radiance radiance);
   void half_bounce();
   void converge(const std::function<bool(std::uint32_t)>& enough);
   void present();
@@ -212,7 +212,11 @@ void Links::Parts::link(const std::vector<glm::vec3>& to) {
   }
   const auto parts = to_link(to, all);
   const auto tiles = table->boxes(to);
-  const auto groups = in_contact(to, all, tiles);
+  std::vector<std::uint32_t> groups(table->groups());
+  if (all)
+    std::iota(groups.begin(), groups.end(), 0u);
+  else
+    groups = groups_beside(moved_boxes(to), contact(geometry.sphere, settings.raster()), tiles);
   offsets.clear();  // should this fail half-way, nothing is known
   route(parts, tiles);
   find_cover(groups);
@@ -237,26 +241,14 @@ std::vector<Part> Links::Parts::to_link(const std::vector<glm::vec3>& to, bool a
   return parts;
 }
 
-// The groups of texels on which something lay or may lie now: those beside a body that has moved, where it was
-// and where it is.
-std::vector<std::uint32_t> Links::Parts::in_contact(const std::vector<glm::vec3>& to, bool all,
-                                                    const TileBoxes& tiles) const {
-  const float gap = contact(geometry.sphere, settings.raster());
-  const auto meets = [&](const TileBoxes::Tile& tile, const scene::Box& box) {
-    return glm::all(glm::lessThanEqual(box.min - gap, tile.centre + tile.half)) &&
-           glm::all(glm::lessThanEqual(tile.centre - tile.half, box.max + gap));
-  };
-  std::vector<std::uint32_t> found;
-  for (std::uint32_t group = 0; group < tiles.groups.size(); ++group) {
-    bool near = all;
-    for (std::size_t body = 1; body < to.size() && !near; ++body) {
-      const auto& box = geometry.scene.bodies[body].box;
-      near = to[body] != offsets[body] && (meets(tiles.groups[group].around, moved(box, offsets[body])) ||
-                                           meets(tiles.groups[group].around, moved(box, to[body])));
-    }
-    if (near) found.push_back(group);
-  }
-  return found;
+// Where something lay on texels or may lie on them now: where the bodies that move were, and where they are.
+std::vector<scene::Box> Links::Parts::moved_boxes(const std::vector<glm::vec3>& to) const {
+  std::vector<scene::Box> boxes;
+  for (std::size_t body = 1; body < to.size(); ++body)
+    if (to[body] != offsets[body])
+      for (const auto& at : {offsets[body], to[body]})
+        boxes.push_back(moved(geometry.scene.bodies[body].box, at));
+  return boxes;
 }
 
 void Links::Parts::route(const std::vector<Part>& parts, const TileBoxes& tiles) {
@@ -368,26 +360,22 @@ void Links::Parts::half_bounce() {
 void Links::Parts::converge(const std::function<bool(std::uint32_t)>& enough) {
   if (settings.bounces) {
     start();
-    while (solution.bounces < *settings.bounces) bounce();
+    while (solution.bounces < *settings.bounces) bounce(Radiance::full);
     solution.settled = true;
     return;
   }
   const bool step = std::exchange(stepped, false) && lit;
   if (!lit) start();
-  if (step && settings.step_bounces < 1) {
-    half_bounce();
-    if (enough(solution.bounces)) return;
-  }
   const auto asked = step ? static_cast<std::uint32_t>(settings.step_bounces) : 0;
+  if (step && settings.step_bounces < 1) half_bounce();
+  // Packed radiance flickers in its last digits: light does not settle by it.
+  if (settings.radiance == Radiance::packed)
+    while (solution.bounces < asked) bounce(Radiance::packed);
+  if (solution.bounces > 0 && enough(solution.bounces)) return;
   double least = std::numeric_limits<double>::infinity();
   std::uint32_t since = 0;
   do {
-    // Packed radiance flickers in its last digits: light does not settle by it.
-    if (solution.bounces < asked && settings.radiance == Radiance::packed) {
-      bounce(Radiance::packed);
-      continue;
-    }
-    bounce();
+    bounce(Radiance::full);
     since = solution.residual < least ? 0 : since + 1;
     least = std::min(least, solution.residual);
     solution.settled = solution.residual < converged || since == patience || solution.bounces == most_bounces;

@@ -189,7 +189,7 @@ void RouteLinks::record(gpu::Frame& frame, const RegionBatch& batch, const Geome
                                 gpu::writes(store.filled), gpu::writes(store.layers)};
   const shaders::EmitLinksConstants emit{.size = pixels,
                                          .store_width = store.extent.width,
-                                         .store_height = store.extent.height,
+                                         .store_pixels = store.pixels(),
                                          .capacity = store.capacity,
                                          .windows = gpu::most_windows};
   frame.render("emit_links", {.extent = {store.extent.width, store.extent.height}}, bindings,
@@ -217,7 +217,7 @@ void RouteLinks::record(gpu::Frame& frame, const RegionBatch& batch, const Geome
                    gpu::writes(counters), gpu::reads(tiles_), gpu::writes(doubts_), gpu::writes(rest_)},
                   shaders::RouteLinksConstants{.size = pixels,
                                                .store_width = store.extent.width,
-                                               .store_pixels = store.extent.width * store.extent.height,
+                                               .store_pixels = store.pixels(),
                                                .texels = table.texels,
                                                .first_pair = chunk.first_pair,
                                                .pairs = chunk.pairs,

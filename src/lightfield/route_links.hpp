@@ -18,6 +18,8 @@ namespace lichtveld::lightfield {
 struct LinkStore {
   LinkStore(const gpu::Device& device, const Settings& settings, std::uint32_t capacity);
 
+  std::uint32_t pixels() const { return extent.width * extent.height; }
+
   StoreExtent extent;      // [pixels]
   std::uint32_t capacity;  // layers of a pixel
   gpu::Buffer filled, layers;
