@@ -7,8 +7,8 @@
 layout(binding = 0) readonly buffer Table { uint table[]; };
 
 // Of pairs `pair` (even) and `pair` + 1 of the chunk.
-uvec2 two_links(uint pair, uint texel, uint texels) {
-  const uint two = table[(pair / 2u) * texels + texel];
+uvec2 two_links(uint pair, uint texel, uint pairs) {
+  const uint two = table[word_at(pair / 2u, texel, pairs / 2u)];
   return uvec2(two & 0xffffu, two >> 16u);
 }
 

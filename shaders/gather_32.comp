@@ -7,8 +7,8 @@
 layout(binding = 0) readonly buffer Table { uint table[]; };
 
 // Of pairs `pair` (even) and `pair` + 1 of the chunk.
-uvec2 two_links(uint pair, uint texel, uint texels) {
-  return uvec2(table[pair * texels + texel], table[(pair + 1u) * texels + texel]);
+uvec2 two_links(uint pair, uint texel, uint pairs) {
+  return uvec2(table[word_at(pair, texel, pairs)], table[word_at(pair + 1u, texel, pairs)]);
 }
 
 #include "gather.glsl"

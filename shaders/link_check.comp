@@ -2,6 +2,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shared.h"
+#include "links.glsl"
 
 layout(local_size_x = TILE) in;
 layout(constant_id = 0) const uint BITS = 16;  // of a link
@@ -26,9 +27,10 @@ uint differing(uint a, uint b) {
 }
 
 void main() {
-  const uint words = BITS == 16u ? constants.texels : 2u * constants.texels;
+  const uint words = 2u * BITS / 32u;
   uint count = 0u;
-  for (uint word = gl_GlobalInvocationID.x; word < words; word += gl_NumWorkGroups.x * TILE)
-    count += differing(table[constants.first_word + word], again[word]);
+  for (uint me = gl_GlobalInvocationID.x; me < constants.texels; me += gl_NumWorkGroups.x * TILE)
+    for (uint word = 0u; word < words; ++word)
+      count += differing(table[word_at(constants.first_word + word, me, constants.words)], again[word_at(word, me, words)]);
   if (count > 0u) atomicAdd(counters.differing, count);
 }

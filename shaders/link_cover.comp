@@ -20,8 +20,8 @@ const float STEEP = 0.5;
 const float FACING = 0.9;
 
 uint link_of(uint pair, uint me) {
-  if (BITS == 32u) return table[pair * constants.texels + me];
-  return table[(pair / 2u) * constants.texels + me] >> 16u * (pair & 1u) & 0xffffu;
+  if (BITS == 32u) return table[word_at(pair, me, constants.pairs)];
+  return table[word_at(pair / 2u, me, constants.pairs / 2u)] >> 16u * (pair & 1u) & 0xffffu;
 }
 
 void main() {

@@ -29,9 +29,9 @@ void main() {
   const uint width = uint(imageSize(normal).x);
   const vec3 n = imageLoad(normal, ivec2(texel_of[me] % width, texel_of[me] / width)).xyz;
   vec4 sum = constants.add != 0u ? sums[me] : vec4(0.0);
-  for (uint pair = constants.first; pair < constants.first + constants.pairs; pair += 2u) {
+  for (uint pair = constants.first; pair < constants.end; pair += 2u) {
     const vec4 a = directions[constants.first_pair + pair], b = directions[constants.first_pair + pair + 1u];
-    const uvec2 links = two_links(pair, me, constants.texels);
+    const uvec2 links = two_links(pair, me, constants.pairs);
     sum += seen(links.x, abs(dot(n, a.xyz)) * a.w) + seen(links.y, abs(dot(n, b.xyz)) * b.w);
   }
   sums[me] = sum;

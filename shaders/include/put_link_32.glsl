@@ -1,4 +1,4 @@
 // The table with links of 32 bits.
 layout(binding = 9) buffer Table { uint table[]; };
 
-void put_link(uint pair, uint texel, uint link, uint texels) { table[pair * texels + texel] = link; }
+void put_link(uint pair, uint texel, uint link, uint pairs) { table[word_at(pair, texel, pairs)] = link; }

@@ -27,7 +27,7 @@ void route(uint me, uint index, Region region) {
   if (!wanted) return;
   if (!lit || link >= 0)
     put_link(uint(region.place.z) - constants.first_pair, me, lit ? uint(link) : UNKNOWN(constants.texels),
-             constants.texels);
+             constants.pairs);
   if (lit && (link < 0 || reach >= uintBitsToFloat(receiver.near.z)))
     doubts[atomicAdd(counters.doubts, 1u)] = uvec2(me, link < 0 ? index | NOTHING_SEEN : index);
 }

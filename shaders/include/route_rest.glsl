@@ -33,7 +33,7 @@ void route(uint me, Region region) {
     if (chart_reaches(ivec2(texel % width, texel / width), place.xyz, away)) break;
   }
   put_link(uint(region.place.z) - constants.first_pair, me,
-           link >= 0 ? uint(link) : known ? MISS(constants.texels) : UNKNOWN(constants.texels), constants.texels);
+           link >= 0 ? uint(link) : known ? MISS(constants.texels) : UNKNOWN(constants.texels), constants.pairs);
   if (link >= 0) return;
   if (known) atomicAdd(counters.misses, 1u);
   else atomicAdd(counters.unknown, 1u);

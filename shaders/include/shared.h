@@ -85,6 +85,9 @@ struct LayerConstants {
 // Invocations of a workgroup over numbered texels.
 const uint TILE = 64;
 
+// Texels whose words of a pair lie together in the table of links: 64 bytes, of which TILE holds a whole number.
+const uint LINE = 16;
+
 // A valid texel as a receiver, where its body is.
 struct Receiver {
   uvec4 near;              // as LightMap::near_walls
@@ -127,10 +130,9 @@ struct RouteLinksConstants {
 
 struct GatherConstants {
   uint texels;
-  uint first;       // pair of the chunk to start with; even
-  uint pairs;       // even
-  uint first_pair;  // of the chunk, among all
-  uint add;         // 1: to the sum that is there
+  uint first_pair, pairs;  // of the table's chunk
+  uint first, end;         // pairs of the chunk; even
+  uint add;                // 1: to the sum that is there
 };
 
 struct CoverConstants {
@@ -141,8 +143,8 @@ struct CoverConstants {
 };
 
 struct CheckConstants {
-  uint texels, size;  // of the table; of the atlas, a side
-  uint first_word;    // of the pairs' links in their chunk
+  uint texels, size;       // of the table; of the atlas, a side
+  uint first_word, words;  // of a texel: that of the pairs; of their chunk
 };
 
 struct BounceConstants {

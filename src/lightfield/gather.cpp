@@ -78,9 +78,10 @@ void Gather::bounce(gpu::Frame& frame, const LightMap& map, const LinkTable& tab
                      gpu::reads(directions_), gpu::reads(table.texel_of), gpu::reads(map.normal),
                      gpu::writes(sums_[half])},
                     shaders::GatherConstants{.texels = table.texels,
-                                             .first = first - chunk.first_pair,
-                                             .pairs = last - first,
                                              .first_pair = chunk.first_pair,
+                                             .pairs = chunk.pairs,
+                                             .first = first - chunk.first_pair,
+                                             .end = last - chunk.first_pair,
                                              .add = add ? 1u : 0u},
                     table.groups(), 1);
       add = true;

@@ -77,7 +77,7 @@ LinkTable::LinkTable(const gpu::Device& device, const scene::Scene& scene, const
   // Two values are not texels: a miss, and a link that no pixel tells.
   bits = texels + 1 <= std::numeric_limits<std::uint16_t>::max() && device.summary().storage_16_bit ? 16 : 32;
 
-  const std::uint64_t a_pair = std::uint64_t{texels} * bits / 8, all = a_pair * pairs;
+  const std::uint64_t a_pair = bytes_of(1), all = bytes_of(pairs);
   const auto memory = device.summary().memory;
   if (static_cast<double>(all) > most_of_memory * static_cast<double>(memory))
     throw std::runtime_error("the links of " + std::to_string(texels) + " texels in " +
@@ -100,8 +100,12 @@ LinkTable::LinkTable(const gpu::Device& device, const scene::Scene& scene, const
 LinkTable::Chunk LinkTable::make_chunk(const gpu::Device& device, const std::string& name,
                                        std::uint32_t first_pair, std::uint32_t pairs) const {
   return {first_pair, pairs,
-          gpu::Buffer(device, name, std::uint64_t{texels} * bits / 8 * pairs,
-                      vk::BufferUsageFlagBits::eStorageBuffer)};
+          gpu::Buffer(device, name, bytes_of(pairs), vk::BufferUsageFlagBits::eStorageBuffer)};
+}
+
+std::uint64_t LinkTable::bytes_of(std::uint32_t pairs) const {
+  const std::uint64_t lines = (texels + shaders::LINE - 1) / shaders::LINE;
+  return lines * shaders::LINE * pairs * bits / 8;
 }
 
 TileBoxes LinkTable::boxes(const std::vector<glm::vec3>& offsets) const {

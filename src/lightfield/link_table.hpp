@@ -50,6 +50,8 @@ struct LinkTable {
   TileBoxes boxes(const std::vector<glm::vec3>& offsets) const;
 
  private:
+  std::uint64_t bytes_of(std::uint32_t pairs) const;  // their links
+
   struct Texel {
     glm::vec3 at_rest;  // [m]
     std::uint32_t body;

@@ -163,12 +163,14 @@ void RouteLinks::find_cover(gpu::Frame& frame, const Geometry& geometry, const L
 
 void RouteLinks::compare(gpu::Frame& frame, const LinkTable& table, const LinkTable::Chunk& chunk,
                          std::uint32_t pair, const LinkTable::Chunk& again, const gpu::Buffer& counters) const {
-  const std::uint32_t first_word = (pair - chunk.first_pair) * table.texels / (32 / table.bits);
+  const std::uint32_t a_word = 32 / table.bits;  // pairs
   frame.compute(
       check_,
       {gpu::reads(chunk.links), gpu::reads(again.links), gpu::writes(counters), gpu::reads(table.texel_of)},
-      shaders::CheckConstants{
-          .texels = table.texels, .size = table.number.extent().width, .first_word = first_word},
+      shaders::CheckConstants{.texels = table.texels,
+                              .size = table.number.extent().width,
+                              .first_word = (pair - chunk.first_pair) / a_word,
+                              .words = chunk.pairs / a_word},
       many_groups, 1);
 }
 
