@@ -4,6 +4,7 @@
 #extension GL_ARB_shader_viewport_layer_array : require
 #include "shared.h"
 #include "receiver_plane.glsl"
+#include "rows.glsl"
 
 layout(location = 0) in vec3 position;
 layout(location = 2) in vec2 atlas;
@@ -11,7 +12,7 @@ layout(location = 4) in uint body;
 
 layout(push_constant) uniform Push { EmitLinksConstants constants; };
 layout(binding = 0) readonly buffer Offsets { vec4 offsets[]; };  // of each body [m]
-layout(binding = 1) readonly buffer Regions { Region regions[]; };
+layout(binding = 1) uniform usamplerBuffer regions;
 
 layout(location = 0) out vec2 atlas_coordinate;
 layout(location = 1) out float psf_depth;
@@ -19,7 +20,7 @@ out gl_PerVertex { vec4 gl_Position; };
 
 void main() {
   const vec4 p = vec4(position + offsets[body].xyz, 1.0);
-  const Region region = regions[gl_InstanceIndex];
+  const Region region = region_at(regions, gl_InstanceIndex);
   atlas_coordinate = atlas;
   psf_depth = dot(region.view.along, p);
   // To where the rasteriser would snap it anyway: so that a region looks the same wherever it lies in the store.

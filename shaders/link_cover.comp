@@ -3,15 +3,15 @@
 #extension GL_GOOGLE_include_directive : require
 #include "shared.h"
 #include "links.glsl"
+#include "rows.glsl"
 
 layout(local_size_x = TILE) in;
 layout(constant_id = 0) const uint BITS = 16;  // of a link
 layout(binding = 0) readonly buffer Table { uint table[]; };
 layout(binding = 1) readonly buffer Directions { vec4 directions[]; };  // xyz; w: solid angle [sr], of each pair
-layout(binding = 2) readonly buffer Receivers { Receiver receivers[]; };
-layout(binding = 3) readonly buffer Positions { vec4 positions[]; };  // xyz [m]; w: the atlas texel
-layout(binding = 4, r32f) uniform writeonly image2D cover;            // as LightMap::cover
-layout(binding = 5) readonly buffer Groups { uint groups[]; };        // of texels, to look at
+layout(binding = 2) uniform usamplerBuffer receivers;
+layout(binding = 3, r32f) uniform writeonly image2D cover;    // as LightMap::cover
+layout(binding = 4) readonly buffer Groups { uint groups[]; };        // of texels, to look at
 layout(push_constant) uniform Push { CoverConstants constants; };
 
 // Flatter than 60 degrees off the normal a texel meets a block's side as near as its bottom.
@@ -27,18 +27,19 @@ uint link_of(uint pair, uint me) {
 void main() {
   const uint me = groups[gl_WorkGroupID.x] * TILE + gl_LocalInvocationID.x;
   if (me >= constants.texels) return;
-  const vec3 face = receivers[me].face_and_triangle.xyz;
-  const vec4 place = positions[me];
+  const Receiver receiver = receiver_at(receivers, me);
+  const vec3 face = receiver.face_and_triangle.xyz, place = receiver.place.xyz;
   float balance = 0.0;
   for (uint vote = 0u; vote < constants.votes; ++vote) {
     const uint pair = vote * constants.pairs / constants.votes;
     const float cosine = abs(dot(face, directions[pair].xyz));
     const uint link = link_of(pair, me);
     if (cosine < STEEP || link >= constants.texels) continue;
-    const bool touches = dot(face, receivers[link].face_and_triangle.xyz) < -FACING &&
-                         abs(dot(face, positions[link].xyz - place.xyz)) <= constants.contact;
+    const Receiver seen = receiver_at(receivers, link);
+    const bool touches = dot(face, seen.face_and_triangle.xyz) < -FACING &&
+                         abs(dot(face, seen.place.xyz - place)) <= constants.contact;
     balance += touches ? cosine : -cosine;
   }
-  const uint width = uint(imageSize(cover).x), texel = uint(place.w);
+  const uint width = uint(imageSize(cover).x), texel = uint(receiver.place.w);
   imageStore(cover, ivec2(texel % width, texel / width), vec4(balance));
 }

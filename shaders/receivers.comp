@@ -10,7 +10,6 @@ layout(binding = 2, rgba32f) uniform readonly image2D normal;
 layout(binding = 3, rgba32f) uniform readonly image2D face_normal;
 layout(binding = 4, rgba32ui) uniform readonly uimage2D near_walls;
 layout(binding = 5) writeonly buffer Receivers { Receiver receivers[]; };
-layout(binding = 6) writeonly buffer Positions { vec4 positions[]; };  // xyz [m]; w: the atlas texel
 layout(push_constant) uniform Push { BounceConstants constants; };
 
 void main() {
@@ -18,6 +17,7 @@ void main() {
   if (me >= constants.texels) return;
   const uint width = uint(imageSize(position).x), number = texel_of[me];
   const ivec2 texel = ivec2(number % width, number / width);
-  positions[me] = vec4(imageLoad(position, texel).xyz, float(number));
-  receivers[me] = Receiver(imageLoad(near_walls, texel), imageLoad(face_normal, texel), imageLoad(normal, texel));
+  const uvec4 near = imageLoad(near_walls, texel);
+  receivers[me] = Receiver(vec4(imageLoad(position, texel).xyz, float(number)), imageLoad(face_normal, texel),
+                           vec4(imageLoad(normal, texel).xyz, uintBitsToFloat(near.z)), near);
 }

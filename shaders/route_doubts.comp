@@ -13,9 +13,9 @@ void main() {
   const uint count = counters.doubts, all = gl_NumWorkGroups.x * gl_WorkGroupSize.x;
   for (uint index = gl_GlobalInvocationID.x; index < count; index += all) {
     const uvec2 doubt = doubts[index], ray = uvec2(doubt.x, doubt.y & ~NOTHING_SEEN);
-    const Region region = regions[ray.y];
-    const Receiver receiver = receivers[ray.x];
-    const vec3 place = positions[ray.x].xyz, face = receiver.face_and_triangle.xyz;
+    const Region region = region_at(regions, ray.y);
+    const Receiver receiver = receiver_at(receivers, ray.x);
+    const vec3 place = receiver.place.xyz, face = receiver.face_and_triangle.xyz;
     const Sight sight = look(place, face, region);
     const Blur blur = blur_of(2.0 / float(constants.size), sight.scale, sight.travel, sight.face_cosine);
     const vec3 away = away_to(shift_to(sight.nearest, sight), sight, region);

@@ -5,18 +5,18 @@
 layout(local_size_x_id = 1) in;  // a tile
 layout(binding = 0) readonly buffer Layers { uvec2 layers[]; };
 layout(binding = 1) readonly buffer Filled { uint filled[]; };
-layout(binding = 2) readonly buffer Regions { Region regions[]; };
-layout(binding = 4) readonly buffer Receivers { Receiver receivers[]; };
-layout(binding = 5) readonly buffer Positions { vec4 positions[]; };  // xyz [m]; w: the atlas texel
+layout(binding = 2) uniform usamplerBuffer regions;
+layout(binding = 4) uniform usamplerBuffer receivers;
 layout(binding = 10) buffer Counted { Counters counters; };
 // Rays that are not done with: texel, region.
-layout(binding = 12) buffer Doubts { uvec2 doubts[]; };
-layout(binding = 13) buffer Rest { uvec2 rest[]; };
+layout(binding = 5) buffer Doubts { uvec2 doubts[]; };
+layout(binding = 12) buffer Rest { uvec2 rest[]; };
 layout(push_constant) uniform Push { RouteLinksConstants constants; };
 
 const uint NOTHING_SEEN = 0x80000000u;  // a doubt's region: no layer was found
 layout(constant_id = 0) const uint CAPACITY = 16;
 #include "layer_link.glsl"
+#include "rows.glsl"
 
 // A texel before a region's raster.
 struct Sight {

@@ -11,12 +11,12 @@ layout(binding = 11) readonly buffer Tiles { uint tiles[]; };
 void route(uint me, uint index, Region region) {
   const bool valid = me < constants.texels;
   me = min(me, constants.texels - 1u);
-  const Receiver receiver = receivers[me];
+  const Receiver receiver = receiver_at(receivers, me);
   const vec3 face = receiver.face_and_triangle.xyz;
-  const Sight sight = look(positions[me].xyz, face, region);
+  const Sight sight = look(receiver.place.xyz, face, region);
   const float pixel_width = 2.0 / float(constants.size);
   const bool wanted = valid && sight.inside;
-  const bool lit = sight.face_cosine > 0.0 && dot(receiver.normal.xyz, sight.travel) < 0.0;
+  const bool lit = sight.face_cosine > 0.0 && dot(receiver.normal_and_wall.xyz, sight.travel) < 0.0;
   const vec2 shift = shift_to(sight.nearest, sight);
   const float limit =
       receiver_depth(shift, sight.depth, sight.slope) + receiver_tolerance(sight.slope, pixel_width);
@@ -28,13 +28,13 @@ void route(uint me, uint index, Region region) {
   if (!lit || link >= 0)
     put_link(uint(region.place.z) - constants.first_pair, me, lit ? uint(link) : UNKNOWN(constants.texels),
              constants.pairs);
-  if (lit && (link < 0 || reach >= uintBitsToFloat(receiver.near.z)))
+  if (lit && (link < 0 || reach >= receiver.normal_and_wall.w))
     doubts[atomicAdd(counters.doubts, 1u)] = uvec2(me, link < 0 ? index | NOTHING_SEEN : index);
 }
 
 void main() {
   const RouteJob job = jobs[constants.first_job + gl_WorkGroupID.x];
-  const Region region = regions[job.region];
+  const Region region = region_at(regions, job.region);
   for (uint entry = job.first; entry < job.end; ++entry)
     route(tiles[entry] * gl_WorkGroupSize.x + gl_LocalInvocationID.x, job.region, region);
 }

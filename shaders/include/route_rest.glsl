@@ -8,9 +8,9 @@ layout(binding = 8) readonly buffer Walls { vec4 walls[]; };
 #include "receiver.glsl"
 
 void route(uint me, Region region) {
-  const Receiver receiver = receivers[me];
+  const Receiver receiver = receiver_at(receivers, me);
   const vec3 face = receiver.face_and_triangle.xyz;
-  const vec4 place = positions[me];
+  const vec4 place = receiver.place;
   const Sight sight = look(place.xyz, face, region);
   const float pixel_width = 2.0 / float(constants.size);
   const float tolerance = receiver_tolerance(sight.slope, pixel_width);
@@ -42,7 +42,7 @@ void route(uint me, Region region) {
 void main() {
   const uint count = counters.rest, all = gl_NumWorkGroups.x * gl_WorkGroupSize.x;
   for (uint index = gl_GlobalInvocationID.x; index < count; index += all) {
-    const Region region = regions[rest[index].y];
+    const Region region = region_at(regions, rest[index].y);
     const uint pair = uint(region.place.z);
     if (pair >= constants.first_pair && pair < constants.first_pair + constants.pairs) route(rest[index].x, region);
   }

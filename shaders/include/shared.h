@@ -90,9 +90,10 @@ const uint LINE = 16;
 
 // A valid texel as a receiver, where its body is.
 struct Receiver {
-  uvec4 near;              // as LightMap::near_walls
+  vec4 place;              // xyz [m]; w: the atlas texel
   vec4 face_and_triangle;  // as LightMap::face_normal
-  vec4 normal;             // xyz: unit
+  vec4 normal_and_wall;    // xyz: unit; w: distance of the nearest wall [m]
+  uvec4 near;              // as LightMap::near_walls
 };
 
 // Part of a pair's raster, and where it lies in the store that many parts share.

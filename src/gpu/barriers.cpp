@@ -41,8 +41,8 @@ Wait advance(UseState& state, vk::PipelineStageFlags2 stages, vk::AccessFlags2 a
 }  // namespace
 
 void Frame::use(const Binding& binding, vk::PipelineStageFlags2 stages) {
-  const auto read =
-      binding.kind == Kind::sampled_image ? AccessBit::eShaderSampledRead : AccessBit::eShaderStorageRead;
+  const bool sampled = binding.kind == Kind::sampled_image || binding.kind == Kind::texel_buffer;
+  const auto read = sampled ? AccessBit::eShaderSampledRead : AccessBit::eShaderStorageRead;
   Access access{stages, read, vk::ImageLayout::eUndefined, binding.writes};
   if (binding.writes) access.access |= AccessBit::eShaderStorageWrite;
   if (binding.image != nullptr) {

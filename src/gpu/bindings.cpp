@@ -19,12 +19,16 @@ Binding reads(const Buffer& buffer) {
 Binding writes(const Buffer& buffer) {
   return {.kind = Kind::storage_buffer, .buffer = &buffer, .writes = true};
 }
+Binding fetches(const Buffer& buffer) {
+  return {.kind = Kind::texel_buffer, .buffer = &buffer};
+}
 
 void push_descriptors(const vk::raii::CommandBuffer& commands, const Pipeline& pipeline,
                       const std::vector<Binding>& bindings) {
   assert(bindings.size() == pipeline.kinds().size());
   std::vector<vk::DescriptorImageInfo> images(bindings.size());
   std::vector<vk::DescriptorBufferInfo> buffers(bindings.size());
+  std::vector<vk::BufferView> views(bindings.size());
   std::vector<vk::WriteDescriptorSet> writes;
   for (std::uint32_t index = 0; index < bindings.size(); ++index) {
     const Binding& binding = bindings[index];
@@ -35,13 +39,16 @@ void push_descriptors(const vk::raii::CommandBuffer& commands, const Pipeline& p
                                               .imageLayout = binding.kind == Kind::sampled_image
                                                                  ? vk::ImageLayout::eShaderReadOnlyOptimal
                                                                  : vk::ImageLayout::eGeneral};
+    else if (binding.kind == Kind::texel_buffer)
+      views[index] = binding.buffer->texels();
     else
       buffers[index] = vk::DescriptorBufferInfo{.buffer = binding.buffer->handle(), .range = VK_WHOLE_SIZE};
     writes.push_back({.dstBinding = index,
                       .descriptorCount = 1,
                       .descriptorType = descriptor_type(binding.kind),
                       .pImageInfo = &images[index],
-                      .pBufferInfo = &buffers[index]});
+                      .pBufferInfo = &buffers[index],
+                      .pTexelBufferView = &views[index]});
   }
   if (!writes.empty()) commands.pushDescriptorSetKHR(pipeline.bind_point(), pipeline.layout(), 0, writes);
 }

@@ -37,8 +37,8 @@ class Specialisation {
 
 vk::DescriptorType descriptor_type(Kind kind) {
   constexpr vk::DescriptorType types[] = {vk::DescriptorType::eCombinedImageSampler,
-                                          vk::DescriptorType::eStorageImage,
-                                          vk::DescriptorType::eStorageBuffer};
+                                          vk::DescriptorType::eStorageImage, vk::DescriptorType::eStorageBuffer,
+                                          vk::DescriptorType::eUniformTexelBuffer};
   return types[static_cast<int>(kind)];
 }
 

@@ -1,6 +1,7 @@
 #include "lichtveld/gpu/resources.hpp"
 
 #include <utility>
+#include <vulkan/vulkan_format_traits.hpp>
 
 namespace lichtveld::gpu {
 
@@ -21,6 +22,16 @@ vk::raii::DeviceMemory allocate(const Device& device, const vk::MemoryRequiremen
     throw std::runtime_error(name + ": the device has no " + std::to_string(needs.size >> 20) +
                              " MiB left; try a smaller --size or fewer --layers");
   }
+}
+
+vk::BufferUsageFlags usage_for(const Device& device, const std::string& name, vk::DeviceSize bytes,
+                               vk::Format texels) {
+  if (texels == vk::Format::eUndefined) return {};
+  const auto count = bytes / vk::blockSize(texels), most = device.summary().max_texel_buffer;
+  if (count > most)
+    throw std::runtime_error(name + ": " + std::to_string(count) + " texels, more than the device's " +
+                             std::to_string(most) + " for one buffer; try a smaller --size");
+  return vk::BufferUsageFlagBits::eUniformTexelBuffer;
 }
 
 bool is_stencil(vk::Format format) {
@@ -46,15 +57,20 @@ LedgerEntry& LedgerEntry::operator=(LedgerEntry&& other) noexcept {
 }
 
 Buffer::Buffer(const Device& device, std::string name, vk::DeviceSize bytes, vk::BufferUsageFlags usage,
-               Memory where)
+               Memory where, vk::Format texels)
     : name_(std::move(name)),
       bytes_(bytes),
-      buffer_(device.handle(), vk::BufferCreateInfo{.size = bytes, .usage = usage}),
+      buffer_(device.handle(),
+              vk::BufferCreateInfo{.size = bytes, .usage = usage | usage_for(device, name_, bytes, texels)}),
       memory_(allocate(device, buffer_.getMemoryRequirements(), where, name_)),
       entry_(device.ledger(), name_, buffer_.getMemoryRequirements().size) {
   device.name(buffer_, name_);
   buffer_.bindMemory(*memory_, 0);
   if (where == Memory::host) mapped_ = memory_.mapMemory(0, VK_WHOLE_SIZE);
+  if (texels == vk::Format::eUndefined) return;
+  texels_ = {device.handle(),
+             vk::BufferViewCreateInfo{.buffer = *buffer_, .format = texels, .range = VK_WHOLE_SIZE}};
+  device.name(texels_, name_);
 }
 
 Image::Image(const Device& device, std::string name, ImageShape shape, vk::Format format,

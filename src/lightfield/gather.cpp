@@ -29,7 +29,7 @@ gpu::ComputePipeline gather_pipeline(const gpu::Device& device, const LinkTable&
   return {device,
           "gather",
           table.bits == 16 ? gpu::Spirv(gather_16_comp) : gpu::Spirv(gather_32_comp),
-          {.kinds = {Kind::storage_buffer, Kind::storage_buffer, Kind::storage_buffer, Kind::storage_buffer,
+          {.kinds = {Kind::storage_buffer, Kind::storage_buffer, Kind::texel_buffer, Kind::storage_buffer,
                      Kind::storage_image, Kind::storage_buffer},
            .push_bytes = sizeof(shaders::GatherConstants),
            .specialisation = {words}}};
@@ -51,7 +51,8 @@ Gather::Gather(const gpu::Device& device, const LinkTable& table, const std::vec
       packed_(storage(device, "lightfield/packed_radiance", (table.texels + 1) * sizeof(std::uint32_t))),
       full_(storage(device, "lightfield/full_radiance", (table.texels + 1) * 3 * sizeof(float))),
       directions_(gpu::upload<glm::vec4>(device, "lightfield/pair_directions", pair_directions(directions),
-                                         vk::BufferUsageFlagBits::eStorageBuffer)),
+                                         vk::BufferUsageFlagBits::eStorageBuffer,
+                                         vk::Format::eR32G32B32A32Sfloat)),
       sums_{storage(device, "lightfield/sums 0", table.texels * sizeof(glm::vec4)),
             storage(device, "lightfield/sums 1", table.texels * sizeof(glm::vec4))},
       changes_(storage(device, "lightfield/changes", table.groups() * sizeof(glm::vec2), gpu::Memory::host)) {}
@@ -75,7 +76,7 @@ void Gather::bounce(gpu::Frame& frame, const LightMap& map, const LinkTable& tab
       if (first >= last) continue;
       frame.compute(radiance == Radiance::packed ? gather_packed_ : gather_full_,
                     {gpu::reads(chunk.links), gpu::reads(radiance == Radiance::packed ? packed_ : full_),
-                     gpu::reads(directions_), gpu::reads(table.texel_of), gpu::reads(map.normal),
+                     gpu::fetches(directions_), gpu::reads(table.texel_of), gpu::reads(map.normal),
                      gpu::writes(sums_[half])},
                     shaders::GatherConstants{.texels = table.texels,
                                              .first_pair = chunk.first_pair,

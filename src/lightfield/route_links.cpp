@@ -30,6 +30,8 @@ constexpr std::uint32_t cover_votes = 24;
 constexpr std::uint32_t widest_store = 4096;  // [pixels]; every device renders that
 // Workgroups of what the device itself counts how much there is to do of.
 constexpr std::uint32_t many_groups = 256;
+// Of a struct that shaders fetch row by row.
+constexpr auto rows = vk::Format::eR32G32B32A32Uint;
 
 StoreExtent store_extent(const gpu::Device& device, std::uint32_t pixels, std::uint32_t capacity) {
   const std::uint64_t a_pixel = std::uint64_t{capacity} * 2 * sizeof(std::uint32_t),
@@ -46,18 +48,20 @@ StoreExtent store_extent(const gpu::Device& device, std::uint32_t pixels, std::u
 }
 
 template <typename T>
-void put(const gpu::Device& device, gpu::Buffer& buffer, const std::vector<T>& contents) {
+void put(const gpu::Device& device, gpu::Buffer& buffer, const std::vector<T>& contents,
+         vk::Format texels = vk::Format::eUndefined) {
   if (contents.empty()) return;
   const auto bytes = contents.size() * sizeof(T);
   if (bytes > buffer.size())
     buffer = gpu::Buffer(device, buffer.name(), 2 * bytes, vk::BufferUsageFlagBits::eStorageBuffer,
-                         gpu::Memory::host);
+                         gpu::Memory::host, texels);
   std::memcpy(buffer.bytes().data(), contents.data(), bytes);
 }
 
 // Of route_links, route_doubts and route_rest, each of which leaves out what it does not use.
 gpu::Interface look_interface(const LinkStore& store, const LinkTable& table) {
-  std::vector kinds(14, Kind::storage_buffer);
+  std::vector kinds(13, Kind::storage_buffer);
+  kinds[2] = kinds[4] = Kind::texel_buffer;
   kinds[6] = Kind::storage_image;
   return {.kinds = kinds,
           .push_bytes = sizeof(shaders::RouteLinksConstants),
@@ -73,8 +77,10 @@ gpu::Window window_of(const shaders::Region& region, std::uint32_t pixels) {
                       {static_cast<std::uint32_t>(region.rect.z), static_cast<std::uint32_t>(region.rect.w)}}};
 }
 
-gpu::Buffer host_buffer(const gpu::Device& device, const char* name) {
-  return {device, name, sizeof(shaders::Region), vk::BufferUsageFlagBits::eStorageBuffer, gpu::Memory::host};
+gpu::Buffer host_buffer(const gpu::Device& device, const char* name,
+                        vk::Format texels = vk::Format::eUndefined) {
+  return {device, name, sizeof(shaders::Region), vk::BufferUsageFlagBits::eStorageBuffer, gpu::Memory::host,
+          texels};
 }
 
 }  // namespace
@@ -107,11 +113,11 @@ RouteLinks::RouteLinks(const gpu::Device& device, const LinkStore& store, const 
                   look_interface(store, table)),
       receive_(device, "route_links", receivers_comp,
                {.kinds = {Kind::storage_buffer, Kind::storage_image, Kind::storage_image, Kind::storage_image,
-                          Kind::storage_image, Kind::storage_buffer, Kind::storage_buffer},
+                          Kind::storage_image, Kind::storage_buffer},
                 .push_bytes = sizeof(shaders::BounceConstants)}),
       cover_(device, "route_links", link_cover_comp,
-             {.kinds = {Kind::storage_buffer, Kind::storage_buffer, Kind::storage_buffer, Kind::storage_buffer,
-                        Kind::storage_image, Kind::storage_buffer},
+             {.kinds = {Kind::storage_buffer, Kind::storage_buffer, Kind::texel_buffer, Kind::storage_image,
+                        Kind::storage_buffer},
               .push_bytes = sizeof(shaders::CoverConstants),
               .specialisation = {table.bits}}),
       check_(device, "link_check", link_check_comp,
@@ -119,10 +125,8 @@ RouteLinks::RouteLinks(const gpu::Device& device, const LinkStore& store, const 
               .push_bytes = sizeof(shaders::CheckConstants),
               .specialisation = {table.bits}}),
       receivers_(device, "lightfield/receivers", table.texels * sizeof(shaders::Receiver),
-                 vk::BufferUsageFlagBits::eStorageBuffer),
-      positions_(device, "lightfield/positions", table.texels * sizeof(glm::vec4),
-                 vk::BufferUsageFlagBits::eStorageBuffer),
-      regions_(host_buffer(device, "lightfield/regions")),
+                 vk::BufferUsageFlagBits::eStorageBuffer, gpu::Memory::device, rows),
+      regions_(host_buffer(device, "lightfield/regions", rows)),
       jobs_(host_buffer(device, "lightfield/jobs")),
       tiles_(host_buffer(device, "lightfield/tiles")),
       groups_(host_buffer(device, "lightfield/covered_groups")),
@@ -130,7 +134,7 @@ RouteLinks::RouteLinks(const gpu::Device& device, const LinkStore& store, const 
       rest_(device, "lightfield/rest", sizeof(glm::uvec2), vk::BufferUsageFlagBits::eStorageBuffer) {
   for (const std::uint32_t double_sided : {0u, 1u})
     draw_.emplace_back(device, "emit_links", emit_links_vert, emit_links_frag,
-                       gpu::Interface{.kinds = {Kind::storage_buffer, Kind::storage_buffer, Kind::storage_image,
+                       gpu::Interface{.kinds = {Kind::storage_buffer, Kind::texel_buffer, Kind::storage_image,
                                                 Kind::storage_buffer, Kind::storage_buffer},
                                       .push_bytes = sizeof(shaders::EmitLinksConstants),
                                       .specialisation = {double_sided}},
@@ -140,8 +144,7 @@ RouteLinks::RouteLinks(const gpu::Device& device, const LinkStore& store, const 
 void RouteLinks::read_receivers(gpu::Frame& frame, const LightMap& map, const LinkTable& table) const {
   frame.compute(receive_,
                 {gpu::reads(table.texel_of), gpu::reads(map.position), gpu::reads(map.normal),
-                 gpu::reads(map.face_normal), gpu::reads(map.near_walls), gpu::writes(receivers_),
-                 gpu::writes(positions_)},
+                 gpu::reads(map.face_normal), gpu::reads(map.near_walls), gpu::writes(receivers_)},
                 shaders::BounceConstants{.texels = table.texels, .radiance_scale = 1}, table.groups(), 1);
 }
 
@@ -152,8 +155,8 @@ void RouteLinks::find_cover(gpu::Frame& frame, const Geometry& geometry, const L
   put(device_, groups_, groups);
   const auto& chunk = table.chunks.front();
   frame.compute(cover_,
-                {gpu::reads(chunk.links), gpu::reads(directions), gpu::reads(receivers_),
-                 gpu::reads(positions_), gpu::writes(map.cover), gpu::reads(groups_)},
+                {gpu::reads(chunk.links), gpu::reads(directions), gpu::fetches(receivers_),
+                 gpu::writes(map.cover), gpu::reads(groups_)},
                 shaders::CoverConstants{.texels = table.texels,
                                         .pairs = chunk.pairs,
                                         .votes = std::min(chunk.pairs, cover_votes),
@@ -178,7 +181,7 @@ void RouteLinks::record(gpu::Frame& frame, const RegionBatch& batch, const Geome
                         const LightMap& map, const LinkTable& table, std::span<const LinkTable::Chunk> chunks,
                         const LinkStore& store, std::uint32_t pixels, std::uint32_t limit,
                         const gpu::Buffer& counters) {
-  put(device_, regions_, batch.regions);
+  put(device_, regions_, batch.regions, rows);
   put(device_, jobs_, batch.jobs);
   put(device_, tiles_, batch.tiles);
   const auto bytes = batch.tiles.size() * table.tile * sizeof(glm::uvec2);
@@ -187,7 +190,7 @@ void RouteLinks::record(gpu::Frame& frame, const RegionBatch& batch, const Geome
       *list = gpu::Buffer(device_, list->name(), bytes, vk::BufferUsageFlagBits::eStorageBuffer);
 
   frame.clear("emit_links", store.filled);
-  const std::vector bindings = {gpu::reads(geometry.offsets), gpu::reads(regions_), gpu::reads(table.number),
+  const std::vector bindings = {gpu::reads(geometry.offsets), gpu::fetches(regions_), gpu::reads(table.number),
                                 gpu::writes(store.filled), gpu::writes(store.layers)};
   const shaders::EmitLinksConstants emit{.size = pixels,
                                          .store_width = store.extent.width,
@@ -213,10 +216,10 @@ void RouteLinks::record(gpu::Frame& frame, const RegionBatch& batch, const Geome
   const auto look = [&](const gpu::ComputePipeline& pipeline, const LinkTable::Chunk& chunk,
                         std::uint32_t first_job, std::uint32_t groups) {
     frame.compute(pipeline,
-                  {gpu::reads(store.layers), gpu::reads(store.filled), gpu::reads(regions_), gpu::reads(jobs_),
-                   gpu::reads(receivers_), gpu::reads(positions_), gpu::reads(map.position),
+                  {gpu::reads(store.layers), gpu::reads(store.filled), gpu::fetches(regions_),
+                   gpu::reads(jobs_), gpu::fetches(receivers_), gpu::writes(doubts_), gpu::reads(map.position),
                    gpu::reads(geometry.walls_first), gpu::reads(geometry.walls), gpu::writes(chunk.links),
-                   gpu::writes(counters), gpu::reads(tiles_), gpu::writes(doubts_), gpu::writes(rest_)},
+                   gpu::writes(counters), gpu::reads(tiles_), gpu::writes(rest_)},
                   shaders::RouteLinksConstants{.size = pixels,
                                                .store_width = store.extent.width,
                                                .store_pixels = store.pixels(),

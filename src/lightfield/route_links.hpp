@@ -55,7 +55,7 @@ class RouteLinks {
   const gpu::Device& device_;
   std::vector<gpu::GraphicsPipeline> draw_;  // one-sided, double-sided
   gpu::ComputePipeline count_, route_, route_doubts_, route_rest_, receive_, cover_, check_;
-  gpu::Buffer receivers_, positions_;            // of each valid texel
+  gpu::Buffer receivers_;                        // of each valid texel
   gpu::Buffer regions_, jobs_, tiles_, groups_;  // host-visible
   gpu::Buffer doubts_, rest_;                    // rays that are not done with
 };

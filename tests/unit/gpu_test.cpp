@@ -50,6 +50,18 @@ TEST_F(Gpu, MemoryIsAccountedByNameForAsLongAsItLives) {
   EXPECT_FALSE(device().ledger()->bytes_by_name().contains("test/buffer"));
 }
 
+TEST_F(Gpu, MoreTexelsThanTheDeviceAddressesAreRefusedByName) {
+  const auto most = device().summary().max_texel_buffer;
+  try {
+    const Buffer buffer(device(), "test/texels", 4 * (most + 1), transfer, Memory::device,
+                        vk::Format::eR32Uint);
+    FAIL();
+  } catch (const std::runtime_error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("test/texels"));
+    EXPECT_THAT(error.what(), HasSubstr(std::to_string(most)));
+  }
+}
+
 TEST_F(Gpu, AFramePutsBarriersBetweenDependentPasses) {
   const Buffer a(device(), "test/a", 4096, transfer), b(device(), "test/b", 4096, transfer);
   const Buffer out(device(), "test/out", 4096, transfer, Memory::host);

@@ -35,6 +35,7 @@ Binding reads(const Image& image);    // storage image
 Binding writes(const Image& image);   // storage image; also for reading and writing
 Binding reads(const Buffer& buffer);  // storage buffer
 Binding writes(const Buffer& buffer);
+Binding fetches(const Buffer& buffer);  // as texels
 
 // One colour or stencil attachment of a render pass: one layer of an image, cleared first unless it is kept.
 struct Attachment {

@@ -12,7 +12,9 @@ namespace lichtveld::gpu {
 
 using Spirv = std::span<const std::uint32_t>;
 
-enum class Kind { sampled_image, storage_image, storage_buffer };
+// texel_buffer: read-only; a shader fetches a texel of up to four words at once, which costs a CPU device a
+// quarter of as many loads from a storage buffer.
+enum class Kind { sampled_image, storage_image, storage_buffer, texel_buffer };
 
 vk::DescriptorType descriptor_type(Kind kind);
 

@@ -36,10 +36,13 @@ enum class Memory { device, host };  // host: mapped and coherent
 class Buffer {
  public:
   // Throws std::runtime_error that names the buffer and its size when the device cannot hold it.
+  // With a format, shaders may also fetch it as texels (Kind::texel_buffer): then it throws too when those are
+  // more than the device can address.
   Buffer(const Device& device, std::string name, vk::DeviceSize bytes, vk::BufferUsageFlags usage,
-         Memory where = Memory::device);
+         Memory where = Memory::device, vk::Format texels = vk::Format::eUndefined);
 
   vk::Buffer handle() const { return *buffer_; }
+  vk::BufferView texels() const { return *texels_; }  // null without a format
   vk::DeviceSize size() const { return bytes_; }
   const std::string& name() const { return name_; }
   UseState& state() const { return *state_; }
@@ -56,6 +59,7 @@ class Buffer {
   vk::DeviceSize bytes_;
   vk::raii::Buffer buffer_ = nullptr;
   vk::raii::DeviceMemory memory_ = nullptr;
+  vk::raii::BufferView texels_ = nullptr;
   void* mapped_ = nullptr;
   std::unique_ptr<UseState> state_ = std::make_unique<UseState>();
   LedgerEntry entry_;

@@ -8,14 +8,15 @@
 
 namespace lichtveld::gpu {
 
-// A device buffer with these contents (at least one element is made, so that empty scenes bind).
+// A device buffer with these contents (at least one element is made, so that empty scenes bind). `texels`: as a
+// Buffer's.
 template <typename T>
 Buffer upload(const Device& device, const std::string& name, std::span<const T> contents,
-              vk::BufferUsageFlags usage) {
+              vk::BufferUsageFlags usage, vk::Format texels = vk::Format::eUndefined) {
   const vk::DeviceSize bytes = std::max<vk::DeviceSize>(sizeof(T), contents.size_bytes());
   Buffer staging(device, name + " (staging)", bytes, vk::BufferUsageFlagBits::eTransferSrc, Memory::host);
   std::ranges::copy(std::as_bytes(contents), staging.bytes().begin());
-  Buffer buffer(device, name, bytes, usage | vk::BufferUsageFlagBits::eTransferDst);
+  Buffer buffer(device, name, bytes, usage | vk::BufferUsageFlagBits::eTransferDst, Memory::device, texels);
   PassTimes times;
   Frame frame(device, times);
   frame.copy("upload " + name, staging, buffer);
