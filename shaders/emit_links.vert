@@ -12,7 +12,7 @@ layout(location = 4) in uint body;
 
 layout(push_constant) uniform Push { EmitLinksConstants constants; };
 layout(binding = 0) readonly buffer Offsets { vec4 offsets[]; };  // of each body [m]
-layout(binding = 1) uniform usamplerBuffer regions;
+layout(binding = 1) uniform usamplerBuffer regions;  // rows.glsl
 
 layout(location = 0) out vec2 atlas_coordinate;
 layout(location = 1) out float psf_depth;

@@ -8,10 +8,10 @@
 layout(local_size_x = TILE) in;
 layout(constant_id = 0) const uint BITS = 16;  // of a link
 layout(binding = 0) readonly buffer Table { uint table[]; };
-layout(binding = 1) readonly buffer Directions { vec4 directions[]; };  // xyz; w: solid angle [sr], of each pair
-layout(binding = 2) uniform usamplerBuffer receivers;
+layout(binding = 1) uniform samplerBuffer directions;         // xyz; w: solid angle [sr], of each pair
+layout(binding = 2) uniform usamplerBuffer receivers;         // rows.glsl
 layout(binding = 3, r32f) uniform writeonly image2D cover;    // as LightMap::cover
-layout(binding = 4) readonly buffer Groups { uint groups[]; };        // of texels, to look at
+layout(binding = 4) readonly buffer Groups { uint groups[]; };  // of texels, to look at
 layout(push_constant) uniform Push { CoverConstants constants; };
 
 // Flatter than 60 degrees off the normal a texel meets a block's side as near as its bottom.
@@ -32,7 +32,7 @@ void main() {
   float balance = 0.0;
   for (uint vote = 0u; vote < constants.votes; ++vote) {
     const uint pair = vote * constants.pairs / constants.votes;
-    const float cosine = abs(dot(face, directions[pair].xyz));
+    const float cosine = abs(dot(face, texelFetch(directions, int(pair)).xyz));
     const uint link = link_of(pair, me);
     if (cosine < STEEP || link >= constants.texels) continue;
     const Receiver seen = receiver_at(receivers, link);

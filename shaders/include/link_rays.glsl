@@ -5,12 +5,11 @@
 layout(local_size_x_id = 1) in;  // a tile
 layout(binding = 0) readonly buffer Layers { uvec2 layers[]; };
 layout(binding = 1) readonly buffer Filled { uint filled[]; };
-layout(binding = 2) uniform usamplerBuffer regions;
-layout(binding = 4) uniform usamplerBuffer receivers;
+layout(binding = 2) uniform usamplerBuffer regions;    // rows.glsl
+layout(binding = 4) uniform usamplerBuffer receivers;  // of each valid texel, likewise
+layout(binding = 5) buffer Doubts { uvec2 doubts[]; };  // rays that are not done with: texel, region
 layout(binding = 10) buffer Counted { Counters counters; };
-// Rays that are not done with: texel, region.
-layout(binding = 5) buffer Doubts { uvec2 doubts[]; };
-layout(binding = 12) buffer Rest { uvec2 rest[]; };
+layout(binding = 12) buffer Rest { uvec2 rest[]; };  // what is left of those
 layout(push_constant) uniform Push { RouteLinksConstants constants; };
 
 const uint NOTHING_SEEN = 0x80000000u;  // a doubt's region: no layer was found

@@ -1,5 +1,5 @@
-// Structs of rows, fetched as texels of four words. lavapipe loads such a texel at once, and a struct of a storage buffer word
-// by word.
+// Structs of shared.h in texel buffers, a row of four words a texel. lavapipe loads such a texel at once, and a struct of a
+// storage buffer word by word. Rows that a shader does not use are not fetched.
 
 vec4 row(usamplerBuffer from, uint index) { return uintBitsToFloat(texelFetch(from, int(index))); }
 

@@ -92,7 +92,7 @@ const uint LINE = 16;
 struct Receiver {
   vec4 place;              // xyz [m]; w: the atlas texel
   vec4 face_and_triangle;  // as LightMap::face_normal
-  vec4 normal_and_wall;    // xyz: unit; w: distance of the nearest wall [m]
+  vec4 normal_and_wall;    // xyz: unit; w: as near.z, for whoever asks for no more of it [m]
   uvec4 near;              // as LightMap::near_walls
 };
 

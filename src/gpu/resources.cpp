@@ -60,6 +60,7 @@ Buffer::Buffer(const Device& device, std::string name, vk::DeviceSize bytes, vk:
                Memory where, vk::Format texels)
     : name_(std::move(name)),
       bytes_(bytes),
+      texel_format_(texels),
       buffer_(device.handle(),
               vk::BufferCreateInfo{.size = bytes, .usage = usage | usage_for(device, name_, bytes, texels)}),
       memory_(allocate(device, buffer_.getMemoryRequirements(), where, name_)),

@@ -30,7 +30,8 @@ struct LinkTable {
   // more than the device has.
   LinkTable(const gpu::Device& device, const scene::Scene& scene, const LightMap& map, std::uint32_t pairs);
 
-  // Links of consecutive pairs, an even number, as many as one buffer may hold.
+  // Links of consecutive pairs, an even number, as many as one buffer may hold; word_at (links.glsl) says
+  // where.
   struct Chunk {
     std::uint32_t first_pair, pairs;
     gpu::Buffer links;

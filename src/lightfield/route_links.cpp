@@ -48,13 +48,12 @@ StoreExtent store_extent(const gpu::Device& device, std::uint32_t pixels, std::u
 }
 
 template <typename T>
-void put(const gpu::Device& device, gpu::Buffer& buffer, const std::vector<T>& contents,
-         vk::Format texels = vk::Format::eUndefined) {
+void put(const gpu::Device& device, gpu::Buffer& buffer, const std::vector<T>& contents) {
   if (contents.empty()) return;
   const auto bytes = contents.size() * sizeof(T);
   if (bytes > buffer.size())
     buffer = gpu::Buffer(device, buffer.name(), 2 * bytes, vk::BufferUsageFlagBits::eStorageBuffer,
-                         gpu::Memory::host, texels);
+                         gpu::Memory::host, buffer.texel_format());
   std::memcpy(buffer.bytes().data(), contents.data(), bytes);
 }
 
@@ -116,7 +115,7 @@ RouteLinks::RouteLinks(const gpu::Device& device, const LinkStore& store, const 
                           Kind::storage_image, Kind::storage_buffer},
                 .push_bytes = sizeof(shaders::BounceConstants)}),
       cover_(device, "route_links", link_cover_comp,
-             {.kinds = {Kind::storage_buffer, Kind::storage_buffer, Kind::texel_buffer, Kind::storage_image,
+             {.kinds = {Kind::storage_buffer, Kind::texel_buffer, Kind::texel_buffer, Kind::storage_image,
                         Kind::storage_buffer},
               .push_bytes = sizeof(shaders::CoverConstants),
               .specialisation = {table.bits}}),
@@ -155,7 +154,7 @@ void RouteLinks::find_cover(gpu::Frame& frame, const Geometry& geometry, const L
   put(device_, groups_, groups);
   const auto& chunk = table.chunks.front();
   frame.compute(cover_,
-                {gpu::reads(chunk.links), gpu::reads(directions), gpu::fetches(receivers_),
+                {gpu::reads(chunk.links), gpu::fetches(directions), gpu::fetches(receivers_),
                  gpu::writes(map.cover), gpu::reads(groups_)},
                 shaders::CoverConstants{.texels = table.texels,
                                         .pairs = chunk.pairs,
@@ -181,7 +180,7 @@ void RouteLinks::record(gpu::Frame& frame, const RegionBatch& batch, const Geome
                         const LightMap& map, const LinkTable& table, std::span<const LinkTable::Chunk> chunks,
                         const LinkStore& store, std::uint32_t pixels, std::uint32_t limit,
                         const gpu::Buffer& counters) {
-  put(device_, regions_, batch.regions, rows);
+  put(device_, regions_, batch.regions);
   put(device_, jobs_, batch.jobs);
   put(device_, tiles_, batch.tiles);
   const auto bytes = batch.tiles.size() * table.tile * sizeof(glm::uvec2);

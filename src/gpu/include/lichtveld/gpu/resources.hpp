@@ -44,6 +44,7 @@ class Buffer {
   vk::Buffer handle() const { return *buffer_; }
   vk::BufferView texels() const { return *texels_; }  // null without a format
   vk::DeviceSize size() const { return bytes_; }
+  vk::Format texel_format() const { return texel_format_; }  // eUndefined: not fetched
   const std::string& name() const { return name_; }
   UseState& state() const { return *state_; }
 
@@ -57,6 +58,7 @@ class Buffer {
  private:
   std::string name_;
   vk::DeviceSize bytes_;
+  vk::Format texel_format_;
   vk::raii::Buffer buffer_ = nullptr;
   vk::raii::DeviceMemory memory_ = nullptr;
   vk::raii::BufferView texels_ = nullptr;
