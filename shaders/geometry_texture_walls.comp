@@ -7,11 +7,11 @@ layout(local_size_x = GROUP, local_size_y = GROUP) in;
 layout(binding = 0, rgba32f) uniform readonly image2D position;
 layout(binding = 1, rgba32f) uniform readonly image2D face_normal;
 layout(binding = 2) readonly buffer WallsFirst { uint walls_first[]; };  // of each triangle in walls; one more at the end
-layout(binding = 3) readonly buffer Walls { vec4 walls[]; };             // two ends each [m]
+layout(binding = 3) uniform samplerBuffer walls;                       // two ends each [m]
 layout(binding = 4, rgba32ui) uniform writeonly uimage2D near_walls;     // as LightMap::near_walls
 
 float distance_to(uint wall, vec3 p) {
-  const vec3 a = walls[2u * wall].xyz, edge = walls[2u * wall + 1u].xyz - a;
+  const vec3 a = texelFetch(walls, int(2u * wall)).xyz, edge = texelFetch(walls, int(2u * wall + 1u)).xyz - a;
   return distance(p, a + edge * clamp(dot(p - a, edge) / max(dot(edge, edge), 1e-30), 0.0, 1.0));
 }
 
@@ -36,5 +36,6 @@ void main() {
       }
     }
   }
+  if (distances.y == FAR) walls_found.y = walls_found.x;
   imageStore(near_walls, texel, uvec4(walls_found, floatBitsToUint(distances.xz)));
 }

@@ -1,12 +1,13 @@
-// A bounce's end for linked texels: E = pi * sum w L / sum w, then L = Le + albedo / pi * E, kept for the next.
+// A bounce's end for linked texels: E = pi * (direct + indirect light) / sum of w. Then what the next gathers, L = albedo / pi * E,
+// and Le of what is no lamp.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shared.h"
 #include "packed_radiance.glsl"
 
 layout(local_size_x = TILE) in;
-layout(binding = 0) readonly buffer Sums0 { vec4 sums_0[]; };  // of each half of the directions
-layout(binding = 1) readonly buffer Sums1 { vec4 sums_1[]; };
+layout(binding = 0) uniform samplerBuffer sums;                 // as gather.glsl's
+layout(binding = 1) readonly buffer Direct { uint direct[]; };  // of each texel and half: sum of w Le of lamps [scaled]
 layout(binding = 2) readonly buffer TexelOf { uint texel_of[]; };
 layout(binding = 3, rgba32f) uniform readonly image2D albedo;
 layout(binding = 4, rgba32f) uniform readonly image2D emission;
@@ -20,7 +21,16 @@ layout(push_constant) uniform Push { BounceConstants constants; };
 const float PI = 3.14159265358979;
 shared vec2 partial[TILE];
 
-vec3 irradiance(vec4 sum) { return sum.a > 0.0 ? PI * sum.rgb / (sum.a * constants.radiance_scale) : vec3(0.0); }
+// From half of the directions. rgb: sum of w L, lamps with it; a: of w.
+vec4 received(uint me, uint half_of) {
+  const uint first = half_of * PARTS / 2u, at = 3u * (2u * me + half_of);
+  vec4 sum = vec4(0.0);
+  for (uint part = first; part < first + PARTS / 2u; ++part) sum += texelFetch(sums, int(part * constants.texels + me));
+  const vec3 from_lamps = vec3(direct[at], direct[at + 1u], direct[at + 2u]) / constants.direct_scale;
+  return vec4(sum.rgb / constants.radiance_scale + from_lamps, sum.a);
+}
+
+vec3 irradiance(vec4 sum) { return sum.a > 0.0 ? PI * sum.rgb / sum.a : vec3(0.0); }
 
 void main() {
   const uint me = gl_GlobalInvocationID.x, lane = gl_LocalInvocationID.x;
@@ -29,12 +39,12 @@ void main() {
     const uint width = uint(imageSize(albedo).x);
     const ivec2 texel = ivec2(texel_of[me] % width, texel_of[me] / width);
     const vec3 before = imageLoad(total_irradiance, texel).rgb;
-    const vec4 first = sums_0[me], second = sums_1[me];
+    const vec4 first = received(me, 0u), second = received(me, 1u);
     const vec3 e = irradiance(first + second), change = abs(e - before);
     imageStore(total_irradiance, texel, vec4(e, 1.0));
     imageStore(half_difference, texel, vec4((irradiance(first) - irradiance(second)) / 2.0, 0.0));
-    const vec3 l = imageLoad(emission, texel).rgb + imageLoad(albedo, texel).rgb / PI * e;
-    const vec3 scaled = l * constants.radiance_scale;
+    const vec3 own = me < constants.lamps ? vec3(0.0) : imageLoad(emission, texel).rgb;
+    const vec3 scaled = (own + imageLoad(albedo, texel).rgb / PI * e) * constants.radiance_scale;
     packed_radiance[me] = pack_radiance(scaled);
     for (uint k = 0u; k < 3u; ++k) full_radiance[3u * me + k] = scaled[k];
     mine = vec2(max(change.r, max(change.g, change.b)), e.r + e.g + e.b);

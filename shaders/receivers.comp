@@ -10,7 +10,7 @@ layout(binding = 2, rgba32f) uniform readonly image2D normal;
 layout(binding = 3, rgba32f) uniform readonly image2D face_normal;
 layout(binding = 4, rgba32ui) uniform readonly uimage2D near_walls;
 layout(binding = 5) writeonly buffer Receivers { Receiver receivers[]; };
-layout(push_constant) uniform Push { BounceConstants constants; };
+layout(push_constant) uniform Push { ReceiveConstants constants; };
 
 void main() {
   const uint me = gl_GlobalInvocationID.x;

@@ -5,7 +5,7 @@
 #include "shared.h"
 #include "link_rays.glsl"
 
-layout(binding = 8) readonly buffer Walls { vec4 walls[]; };
+layout(binding = 8) uniform samplerBuffer walls;
 #include "receiver_plane.glsl"
 #include "wall.glsl"
 

@@ -1,6 +1,5 @@
 // Rays of texels along a pair's two directions, and the A-buffer of texel numbers that they look into. Bindings 3, 6 to 9,
-// 11 are of the shaders that include it: the table at 9, with put_link(index of the pair in the chunk, texel, link,
-// texels).
+// 11, 13 and 14 are of the shaders that include it: the table at 9.
 
 layout(local_size_x_id = 1) in;  // a tile
 layout(binding = 0) readonly buffer Layers { uvec2 layers[]; };

@@ -4,6 +4,7 @@
 // would pay for the rare one every time.
 #include "link_rays.glsl"
 #include "receiver_plane.glsl"
+#include "relink.glsl"
 
 layout(binding = 3) readonly buffer Jobs { RouteJob jobs[]; };  // of each workgroup
 layout(binding = 11) readonly buffer Tiles { uint tiles[]; };
@@ -26,8 +27,7 @@ void route(uint me, uint index, Region region) {
       most_blur(blur_of(pixel_width, sight.scale, sight.travel, sight.face_cosine));
   if (!wanted) return;
   if (!lit || link >= 0)
-    put_link(uint(region.place.z) - constants.first_pair, me, lit ? uint(link) : UNKNOWN(constants.texels),
-             constants.pairs);
+    relink(me, receiver.normal_and_wall.xyz, region, lit ? uint(link) : UNKNOWN(constants.texels));
   if (lit && (link < 0 || reach >= receiver.normal_and_wall.w))
     doubts[atomicAdd(counters.doubts, 1u)] = uvec2(me, link < 0 ? index | NOTHING_SEEN : index);
 }

@@ -4,8 +4,9 @@
 
 layout(binding = 6, rgba32f) uniform readonly image2D position;
 layout(binding = 7) readonly buffer WallsFirst { uint walls_first[]; };
-layout(binding = 8) readonly buffer Walls { vec4 walls[]; };
+layout(binding = 8) uniform samplerBuffer walls;
 #include "receiver.glsl"
+#include "relink.glsl"
 
 void route(uint me, Region region) {
   const Receiver receiver = receiver_at(receivers, me);
@@ -32,8 +33,8 @@ void route(uint me, Region region) {
     const uint texel = uint(place.w), width = uint(imageSize(position).x);
     if (chart_reaches(ivec2(texel % width, texel / width), place.xyz, away)) break;
   }
-  put_link(uint(region.place.z) - constants.first_pair, me,
-           link >= 0 ? uint(link) : known ? MISS(constants.texels) : UNKNOWN(constants.texels), constants.pairs);
+  relink(me, receiver.normal_and_wall.xyz, region,
+         link >= 0 ? uint(link) : known ? MISS(constants.texels) : UNKNOWN(constants.texels));
   if (link >= 0) return;
   if (known) atomicAdd(counters.misses, 1u);
   else atomicAdd(counters.unknown, 1u);

@@ -8,7 +8,7 @@ layout(binding = 4, rgba32f) uniform readonly image2D face_normal;
 layout(binding = 5, rgba32f) uniform writeonly image2D psf_irradiance;  // rgb: w_k L_k [W m^-2]; a: w_k [sr]
 layout(binding = 6, r32f) uniform image2D cover;  // weights [sr] of rays that start in contact, less all others
 layout(binding = 7) readonly buffer WallsFirst { uint walls_first[]; };  // of each triangle in walls; one more at the end
-layout(binding = 8) readonly buffer Walls { vec4 walls[]; };             // two ends each [m]
+layout(binding = 8) uniform samplerBuffer walls;                         // two ends each [m]
 layout(binding = 9, rgba32ui) uniform readonly uimage2D near_walls;
 layout(binding = 10) buffer Counted { Counters counters; };
 layout(push_constant) uniform Push { RoutingConstants constants; };

@@ -88,6 +88,9 @@ const uint TILE = 64;
 // Texels whose words of a pair lie together in the table of links: 64 bytes, of which TILE holds a whole number.
 const uint LINE = 16;
 
+// Parts of the directions, each of which spans the sphere: two a half. What a step's bounce may leave for the next.
+const uint PARTS = 4;
+
 // A valid texel as a receiver, where its body is.
 struct Receiver {
   vec4 place;              // xyz [m]; w: the atlas texel
@@ -127,12 +130,16 @@ struct RouteLinksConstants {
   uint texels;             // links that a pair has
   uint first_pair, pairs;  // of the table's chunk
   uint first_job;          // of this dispatch
+  uint lamps;              // texels from the first on whose light the direct sums hold; 0: leaves them alone
+  uint lamps_alike;        // of these, from the first on, that send the same
+  uint half_pairs;         // pairs of either half of the directions
 };
 
 struct GatherConstants {
   uint texels;
   uint first_pair, pairs;  // of the table's chunk
   uint first, end;         // pairs of the chunk; even
+  uint part;               // of the directions
   uint add;                // 1: to the sum that is there
 };
 
@@ -148,9 +155,15 @@ struct CheckConstants {
   uint first_word, words;  // of a texel: that of the pairs; of their chunk
 };
 
+struct ReceiveConstants {
+  uint texels;
+};
+
 struct BounceConstants {
   uint texels;
-  float radiance_scale;  // what radiance is multiplied by before it is packed
+  uint lamps;             // texels from the first on whose light the direct sums hold
+  float radiance_scale;   // what radiance is multiplied by before it is packed
+  float direct_scale;     // what w Le is multiplied by in direct sums
 };
 
 // What a solve counts, summed over PSFs.

@@ -1,5 +1,5 @@
 // Lines in a receiver's plane where other surfaces leave it. Included after receiver_plane.glsl by a shader that has
-// `walls`: two vec4 a line, its ends [m]; the first's w: 1 if the surface rises.
+// `walls`: two texels a line, its ends [m]; the first's w: 1 if the surface rises.
 
 // Of the blur: rounding of places in 32 bits.
 const float ON_A_WALL = 0.1;
@@ -7,9 +7,9 @@ const float ON_A_WALL = 0.1;
 // Whether wall `wall` stands between p and the place `away` from it. Within its blur the rasteriser may have put a centre on
 // either side.
 bool is_between(uint wall, vec3 p, vec3 away, vec3 face, Blur blur, bool rising_only) {
-  const vec4 first = walls[2u * wall];
+  const vec4 first = texelFetch(walls, int(2u * wall));
   if (rising_only && first.w == 0.0) return false;
-  const vec3 a = first.xyz, edge = walls[2u * wall + 1u].xyz - a;
+  const vec3 a = first.xyz, edge = texelFetch(walls, int(2u * wall + 1u)).xyz - a;
   const float width = length(edge);
   if (width == 0.0) return false;
   const vec3 along = edge / width, across = cross(face, along);

@@ -1,6 +1,8 @@
 #include "geometry_texture.hpp"
 
 #include <cstddef>
+#include <optional>
+#include <utility>
 
 #include "shaders/geometry_texture.frag.h"
 #include "shaders/geometry_texture.vert.h"
@@ -26,23 +28,25 @@ GeometryTexture::GeometryTexture(const gpu::Device& device)
              .colours = std::vector(5, rgba32f)}),
       walls_(device, "geometry_texture", geometry_texture_walls_comp,
              {.kinds = {gpu::Kind::storage_image, gpu::Kind::storage_image, gpu::Kind::storage_buffer,
-                        gpu::Kind::storage_buffer, gpu::Kind::storage_image}}),
+                        gpu::Kind::texel_buffer, gpu::Kind::storage_image}}),
       gutter_(
           device, "geometry_texture", geometry_texture_gutter_comp,
-          {.kinds = std::vector(4, gpu::Kind::storage_image), .push_bytes = sizeof(shaders::GutterConstants)}) {
+          {.kinds = std::vector(5, gpu::Kind::storage_image), .push_bytes = sizeof(shaders::GutterConstants)}) {
 }
 
-void GeometryTexture::record(gpu::Frame& frame, const Geometry& geometry, const LightMap& map) const {
-  const vk::ClearValue nothing;
+void GeometryTexture::record(gpu::Frame& frame, const Geometry& geometry, const LightMap& map) {
+  const auto before = std::exchange(drawn_, geometry.shifts);
+  const std::optional<vk::ClearValue> cleared = before.empty() ? std::optional(vk::ClearValue{}) : std::nullopt;
   gpu::Target target{.extent = map.position.extent()};
   for (const auto* image : {&map.position, &map.normal, &map.face_normal, &map.albedo, &map.emission})
-    target.colours.push_back({image, nothing});
+    target.colours.push_back({image, cleared});
   std::vector<gpu::Binding> textures;
   for (const auto& texture : geometry.textures) textures.push_back(gpu::sampled(texture, geometry.sampler));
   frame.render(draw_.name(), target, textures, {&geometry.vertices, &geometry.indices}, [&](gpu::Draw& draw) {
     const auto offsets = geometry.offsets.as<glm::vec4>();
     draw.geometry(geometry.vertices, geometry.indices);
     for (const auto& surface : geometry.scene.surfaces) {
+      if (!before.empty() && before[surface.body] == drawn_[surface.body]) continue;
       const auto& material = geometry.scene.materials[surface.material];
       draw.bind(draw_, {material.texture < 0 ? textures.back() : textures[material.texture]});
       draw.push(shaders::GeometryConstants{.offset = offsets[surface.body],
@@ -54,7 +58,7 @@ void GeometryTexture::record(gpu::Frame& frame, const Geometry& geometry, const 
   });
   frame.compute(walls_,
                 {gpu::reads(map.position), gpu::reads(map.face_normal), gpu::reads(geometry.walls_first),
-                 gpu::reads(geometry.walls), gpu::writes(map.near_walls)},
+                 gpu::fetches(geometry.walls), gpu::writes(map.near_walls)},
                 map.groups, map.groups);
 }
 
@@ -67,11 +71,12 @@ void GeometryTexture::find_shown(gpu::Frame& frame, const LightMap& map) const {
 }
 
 void GeometryTexture::name_sources(gpu::Frame& frame, const LightMap& map, bool covered,
-                                   const gpu::Image& sources) const {
-  frame.compute(
-      gutter_,
-      {gpu::reads(map.position), gpu::reads(map.face_normal), gpu::reads(map.cover), gpu::writes(sources)},
-      shaders::GutterConstants{.size = map.size, .covered = covered ? 1u : 0u}, map.groups, map.groups);
+                                   const gpu::Image& found) const {
+  frame.compute(gutter_,
+                {gpu::reads(map.position), gpu::reads(map.face_normal), gpu::reads(map.cover),
+                 gpu::reads(covered ? map.source : map.shown), gpu::writes(found)},
+                shaders::GutterConstants{.size = map.size, .covered = covered ? 1u : 0u}, map.groups,
+                map.groups);
 }
 
 }  // namespace lichtveld::lightfield

@@ -25,8 +25,9 @@ gpu::Image atlas_image(const gpu::Device& device, const char* name, std::uint32_
 constexpr float wall_reach = 8;
 
 template <typename T>
-gpu::Buffer upload_storage(const gpu::Device& device, const char* name, const std::vector<T>& contents) {
-  return gpu::upload<T>(device, name, contents, vk::BufferUsageFlagBits::eStorageBuffer);
+gpu::Buffer upload_storage(const gpu::Device& device, const char* name, const std::vector<T>& contents,
+                           vk::Format texels = vk::Format::eUndefined) {
+  return gpu::upload<T>(device, name, contents, vk::BufferUsageFlagBits::eStorageBuffer, texels);
 }
 
 constexpr auto rgba32f = vk::Format::eR32G32B32A32Sfloat;
@@ -87,7 +88,8 @@ Geometry::Geometry(const gpu::Device& device, const scene::Scene& scene)
       offsets(device, "scene/offsets", scene.bodies.size() * sizeof(glm::vec4),
               vk::BufferUsageFlagBits::eStorageBuffer, gpu::Memory::host),
       walls_first(device, "scene/walls_first", sizeof(std::uint32_t), vk::BufferUsageFlagBits::eStorageBuffer),
-      walls(device, "scene/walls", sizeof(glm::vec4), vk::BufferUsageFlagBits::eStorageBuffer),
+      walls(device, "scene/walls", sizeof(glm::vec4), vk::BufferUsageFlagBits::eStorageBuffer,
+            gpu::Memory::device, rgba32f),
       textures(upload_textures(device, scene)),
       sampler(device.handle(), vk::SamplerCreateInfo{.magFilter = vk::Filter::eLinear,
                                                      .minFilter = vk::Filter::eLinear,
@@ -108,7 +110,7 @@ void Geometry::place(const std::vector<glm::vec3>& to, std::uint32_t pixels) {
     ends.emplace_back(line.b, 0);
   }
   walls_first = upload_storage<std::uint32_t>(device_, "scene/walls_first", found.first);
-  walls = upload_storage<glm::vec4>(device_, "scene/walls", ends);
+  walls = upload_storage<glm::vec4>(device_, "scene/walls", ends, rgba32f);
   const auto places = offsets.as<glm::vec4>();
   for (std::size_t body = 0; body < shifts.size(); ++body) places[body] = glm::vec4(shifts[body], 0);
 }

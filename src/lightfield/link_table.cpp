@@ -12,6 +12,12 @@ namespace {
 constexpr std::uint32_t block = 8;
 // Of the device's memory, links may take: the rest is for images, and for whoever else lives there.
 constexpr double most_of_memory = 0.75;
+// A word of links that no texel's number equals, of 16 or 32 bits.
+constexpr std::uint32_t no_link = 0xffffffffu;
+
+// What emits less than this share of the brightest is no lamp: the whole numbers that direct light is summed in
+// would not tell its shades. A bounce gathers its light with what surfaces reflect.
+constexpr float dimmest_lamp = 1e-4f;
 
 // Within a block in Morton order, so that any run of numbers is nearly square.
 std::vector<std::uint32_t> valid_texels(const std::vector<glm::vec4>& positions, std::uint32_t size) {
@@ -24,6 +30,22 @@ std::vector<std::uint32_t> valid_texels(const std::vector<glm::vec4>& positions,
         if (x < size && y < size && positions[std::size_t{y} * size + x].a > 0) found.push_back(y * size + x);
       }
   return found;
+}
+
+float brightest(const glm::vec4& emission) {
+  return std::max({emission.r, emission.g, emission.b});
+}
+
+// Moves the lamps to the front and returns what each sends.
+std::vector<glm::vec3> lamps_first(std::vector<std::uint32_t>& valid, const std::vector<glm::vec4>& emission) {
+  float most = 0;
+  for (const auto texel : valid) most = std::max(most, brightest(emission[texel]));
+  const auto end = std::stable_partition(valid.begin(), valid.end(), [&](std::uint32_t texel) {
+    return brightest(emission[texel]) > dimmest_lamp * most;
+  });
+  std::vector<glm::vec3> lamps;
+  for (auto texel = valid.begin(); texel != end; ++texel) lamps.emplace_back(emission[*texel]);
+  return lamps;
 }
 
 std::vector<std::uint32_t> body_of_triangles(const scene::Scene& scene) {
@@ -64,11 +86,14 @@ struct Bounds {
 
 LinkTable::LinkTable(const gpu::Device& device, const scene::Scene& scene, const LightMap& map,
                      std::uint32_t pairs)
-    : texel_of(device, "lightfield/texel_of", sizeof(std::uint32_t), vk::BufferUsageFlagBits::eStorageBuffer),
+    : pairs(pairs),
+      texel_of(device, "lightfield/texel_of", sizeof(std::uint32_t), vk::BufferUsageFlagBits::eStorageBuffer),
       number(device, "lightfield/number", {}, vk::Format::eR32Uint, vk::ImageUsageFlagBits::eStorage) {
   const auto positions = gpu::download<glm::vec4>(device, map.position);
   const auto faces = gpu::download<glm::vec4>(device, map.face_normal);
-  const auto valid = valid_texels(positions, map.size);
+  auto valid = valid_texels(positions, map.size);
+  lamps = lamps_first(valid, gpu::download<glm::vec4>(device, map.emission));
+  while (lamps_alike < lamps.size() && lamps[lamps_alike] == lamps[0]) ++lamps_alike;
   const auto bodies = body_of_triangles(scene);
   texels = static_cast<std::uint32_t>(valid.size());
   tile = std::clamp(std::bit_floor(device.summary().subgroup_size), 8u, shaders::TILE);
@@ -99,8 +124,14 @@ LinkTable::LinkTable(const gpu::Device& device, const scene::Scene& scene, const
 
 LinkTable::Chunk LinkTable::make_chunk(const gpu::Device& device, const std::string& name,
                                        std::uint32_t first_pair, std::uint32_t pairs) const {
-  return {first_pair, pairs,
-          gpu::Buffer(device, name, bytes_of(pairs), vk::BufferUsageFlagBits::eStorageBuffer)};
+  Chunk chunk{first_pair, pairs,
+              gpu::Buffer(device, name, bytes_of(pairs),
+                          vk::BufferUsageFlagBits::eStorageBuffer | vk::BufferUsageFlagBits::eTransferDst)};
+  gpu::PassTimes times;
+  gpu::Frame frame(device, times);
+  frame.clear("route_links", chunk.links, no_link);
+  frame.submit_and_wait();
+  return chunk;
 }
 
 std::uint64_t LinkTable::bytes_of(std::uint32_t pairs) const {

@@ -1,6 +1,6 @@
 // The links: for each antipodal pair of directions and each valid texel the number of the texel that it sees,
 // of the two directions along the one that it receives. Texels are numbered in blocks of the atlas, so that a
-// tile of consecutive numbers lies together on a surface.
+// tile of consecutive numbers lies together on a surface; lamps come first.
 #pragma once
 
 #include <string>
@@ -37,11 +37,15 @@ struct LinkTable {
     gpu::Buffer links;
   };
 
+  // Of links that see nothing yet.
   Chunk make_chunk(const gpu::Device& device, const std::string& name, std::uint32_t first_pair,
                    std::uint32_t pairs) const;
 
-  std::uint32_t texels = 0;  // valid ones
-  std::uint32_t bits = 16;   // of a link
+  std::uint32_t texels = 0;       // valid ones
+  std::uint32_t pairs = 0;        // of directions
+  std::uint32_t bits = 16;        // of a link
+  std::uint32_t lamps_alike = 0;  // of the lamps, from the first on, that send the same
+  std::vector<glm::vec3> lamps;   // Le of the texels that come first [W m^-2 sr^-1]
   std::vector<Chunk> chunks;
   gpu::Buffer texel_of;  // uint: the atlas texel of each number
   gpu::Image number;     // uint: the number of each atlas texel's source; `texels` outside charts and gutters

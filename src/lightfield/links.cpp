@@ -59,6 +59,18 @@ scene::Box moved(const scene::Box& box, const glm::vec3& by) {
   return {box.min + by, box.max + by};
 }
 
+// The direction of each pair. Of either half every other one comes first, so that each of its parts spans the
+// sphere.
+std::vector<Direction> pair_directions(const Settings& settings) {
+  const auto all = directions(settings.psf, settings.weights, settings.seed);
+  const std::size_t half = all.size() / 4;
+  std::vector<Direction> pairs;
+  for (const std::size_t first : {std::size_t{0}, half})
+    for (const std::size_t odd : {0, 1})
+      for (auto index = odd; index < half; index += 2) pairs.push_back(all[first + index]);
+  return pairs;
+}
+
 // Everything that depends on how many layers a pixel's list holds.
 struct Layered {
   Layered(const gpu::Device& device, const Settings& settings, const LinkTable& table, std::uint32_t capacity)
@@ -73,7 +85,7 @@ struct Links::Parts {
   Parts(const gpu::Device& device, const scene::Scene& scene, const Settings& settings)
       : device(device),
         settings(settings),
-        psfs(directions(settings.psf, settings.weights, settings.seed)),
+        pair_directions(lightfield::pair_directions(settings)),
         geometry(device, scene),
         map(device, settings.size),
         geometry_texture(device),
@@ -85,13 +97,14 @@ struct Links::Parts {
     find_sources();
     brightest_of_scene = brightest(device, map);
     table = std::make_unique<LinkTable>(device, scene, map, pairs());
-    gather = std::make_unique<Gather>(device, *table, psfs, radiance_scale(brightest_of_scene));
+    direct = std::make_unique<DirectLight>(device, *table);
+    gather = std::make_unique<Gather>(device, *table, pair_directions, radiance_scale(brightest_of_scene));
     layered = std::make_unique<Layered>(device, settings, *table, capacity_for(settings.layers));
   }
 
   const gpu::Device& device;
   const Settings settings;
-  const std::vector<Direction> psfs;
+  const std::vector<Direction> pair_directions;
   gpu::PassTimes times;
   Geometry geometry;
   LightMap map;
@@ -101,13 +114,14 @@ struct Links::Parts {
   gpu::Buffer counters;
   Brightest brightest_of_scene;
   std::unique_ptr<LinkTable> table;
+  std::unique_ptr<DirectLight> direct;
   std::unique_ptr<Gather> gather;
   std::unique_ptr<Layered> layered;
   std::optional<LinkTable::Chunk> again;  // links of two pairs, to compare
   std::vector<glm::vec3> offsets;         // of the bodies as they are linked; empty before the first time
   bool lit = false;                       // there is light to start from
   bool stepped = false;                   // the links have changed since the last bounce
-  std::uint32_t next_half = 0;            // of the directions
+  std::uint32_t next_part = 0;            // of the directions, to bounce over
   Solution solution;                      // of the last solve or update
   std::uint32_t checked = 0;              // pairs, since the last move
 
@@ -116,14 +130,17 @@ struct Links::Parts {
   void place(const std::vector<glm::vec3>& to);
   void find_sources();
   void link(const std::vector<glm::vec3>& to);
-  std::vector<Part> to_link(const std::vector<glm::vec3>& to, bool all) const;
+  Part whole_raster(std::uint32_t pair) const;
+  std::vector<Part> whole_rasters() const;
+  std::vector<Part> changed_parts(std::size_t body, const glm::vec3& from, const glm::vec3& to) const;
   void route(const std::vector<Part>& parts, const TileBoxes& tiles);
-  std::vector<scene::Box> moved_boxes(const std::vector<glm::vec3>& to) const;
+  std::vector<scene::Box> moved_boxes(const std::vector<glm::vec3>& from,
+                                      const std::vector<glm::vec3>& to) const;
   void find_cover(const std::vector<std::uint32_t>& groups);
   LinkCheck check_two();
   void start();
   void bounce(Radiance radiance);
-  void half_bounce();
+  void part_bounce();
   void converge(const std::function<bool(std::uint32_t)>& enough);
   void present();
 };
@@ -210,44 +227,53 @@ void Links::Parts::link(const std::vector<glm::vec3>& to) {
     solution.misses = solution.rays_unknown = solution.overflow_pixels = 0;
     solution.texels_valid = table->texels;
   }
-  const auto parts = to_link(to, all);
+  const auto before = std::exchange(offsets, {});  // should this fail half-way, nothing is known
   const auto tiles = table->boxes(to);
   std::vector<std::uint32_t> groups(table->groups());
-  if (all)
+  if (all) {
     std::iota(groups.begin(), groups.end(), 0u);
-  else
-    groups = groups_beside(moved_boxes(to), contact(geometry.sphere, settings.raster()), tiles);
-  offsets.clear();  // should this fail half-way, nothing is known
-  route(parts, tiles);
+    route(whole_rasters(), tiles);
+  } else {
+    groups = groups_beside(moved_boxes(before, to), contact(geometry.sphere, settings.raster()), tiles);
+    // One after the other: where their ways cross, the same links change for each.
+    for (std::size_t body = 1; body < to.size(); ++body)
+      if (to[body] != before[body]) route(changed_parts(body, before[body], to[body]), tiles);
+  }
   find_cover(groups);
   stepped = true;
   checked = 0;
   offsets = to;
 }
 
-std::vector<Part> Links::Parts::to_link(const std::vector<glm::vec3>& to, bool all) const {
+Part Links::Parts::whole_raster(std::uint32_t pair) const {
+  const auto pixels = settings.raster();
+  return whole(psf_view(pair_directions[pair], geometry.sphere, pixels), pair, pixels);
+}
+
+std::vector<Part> Links::Parts::whole_rasters() const {
+  std::vector<Part> parts;
+  for (std::uint32_t pair = 0; pair < pairs(); ++pair) parts.push_back(whole_raster(pair));
+  return parts;
+}
+
+// Of every pair's raster.
+std::vector<Part> Links::Parts::changed_parts(std::size_t body, const glm::vec3& from,
+                                              const glm::vec3& to) const {
   const auto pixels = settings.raster();
   std::vector<Part> parts;
-  for (std::uint32_t pair = 0; pair < pairs(); ++pair) {
-    const auto view = psf_view(psfs[pair], geometry.sphere, pixels);
-    if (all)
-      parts.push_back(whole(view, pair, pixels));
-    else
-      for (std::size_t body = 1; body < to.size(); ++body)
-        if (to[body] != offsets[body])
-          parts.push_back(changed(view, pair, pixels, moved(geometry.scene.bodies[body].box, offsets[body]),
-                                  to[body] - offsets[body]));
-  }
+  for (std::uint32_t pair = 0; pair < pairs(); ++pair)
+    parts.push_back(changed(psf_view(pair_directions[pair], geometry.sphere, pixels), pair, pixels,
+                            moved(geometry.scene.bodies[body].box, from), to - from));
   return parts;
 }
 
 // Where something lay on texels or may lie on them now: where the bodies that move were, and where they are.
-std::vector<scene::Box> Links::Parts::moved_boxes(const std::vector<glm::vec3>& to) const {
+std::vector<scene::Box> Links::Parts::moved_boxes(const std::vector<glm::vec3>& from,
+                                                  const std::vector<glm::vec3>& to) const {
   std::vector<scene::Box> boxes;
   for (std::size_t body = 1; body < to.size(); ++body)
-    if (to[body] != offsets[body])
-      for (const auto& at : {offsets[body], to[body]})
-        boxes.push_back(moved(geometry.scene.bodies[body].box, at));
+    if (to[body] != from[body])
+      for (const auto& at : {from[body], to[body]}) boxes.push_back(moved(geometry.scene.bodies[body].box, at));
   return boxes;
 }
 
@@ -263,8 +289,8 @@ void Links::Parts::route(const std::vector<Part>& parts, const TileBoxes& tiles)
     gpu::Frame frame(device, times);
     if (!placed) layered->route.read_receivers(frame, map, *table);
     placed = true;
-    layered->route.record(frame, batches[batch], geometry, map, *table, table->chunks, layered->store, pixels,
-                          settings.layers, counters);
+    layered->route.record(frame, batches[batch], geometry, map, *table, {table->chunks, *direct, true},
+                          layered->store, pixels, settings.layers, counters);
     frame.to_host(counters);
     frame.submit_and_wait();
     solution.overflow_pixels += counted.overflow_pixels;
@@ -300,15 +326,14 @@ LinkCheck Links::Parts::check_two() {
   const auto chunk = std::find_if(table->chunks.begin(), table->chunks.end(),
                                   [&](const auto& c) { return first < c.first_pair + c.pairs; });
   std::vector<Part> parts;
-  for (const auto pair : {first, first + 1})
-    parts.push_back(whole(psf_view(psfs[pair], geometry.sphere, pixels), pair, pixels));
+  for (const auto pair : {first, first + 1}) parts.push_back(whole_raster(pair));
   auto& counted = counters.as<shaders::Counters>().front();
   counted = {};
   for (const auto& batch : pack(parts, layered->store.extent, table->boxes(offsets))) {
     gpu::Frame frame(device, times);
     counted.doubts = counted.rest = 0;
-    layered->route.record(frame, batch, geometry, map, *table, {&*again, 1}, layered->store, pixels,
-                          settings.layers, counters);
+    layered->route.record(frame, batch, geometry, map, *table, {{&*again, 1}, *direct, false}, layered->store,
+                          pixels, settings.layers, counters);
     frame.to_host(counters);
     frame.submit_and_wait();
   }
@@ -331,27 +356,28 @@ void Links::Parts::find_cover(const std::vector<std::uint32_t>& groups) {
 
 void Links::Parts::start() {
   gpu::Frame frame(device, times);
-  gather->start(frame, map, *table);
+  gather->start(frame, map, *table, *direct);
   frame.submit_and_wait();
   lit = true;
 }
 
 void Links::Parts::bounce(Radiance radiance) {
   gpu::Frame frame(device, times);
-  gather->bounce(frame, map, *table, radiance);
+  gather->bounce(frame, map, *table, *direct, radiance);
   frame.submit_and_wait();
   ++solution.bounces;
   const auto change = gather->change(*table);
   solution.residual = bound_on_missing(change.most, brightest_of_scene.albedo, change.mean);
 }
 
-// What serve shows while things move: a bounce over every other direction costs half, and leaves of the other
-// half the light of one step ago. It says nothing about what is missing.
-void Links::Parts::half_bounce() {
+// What serve shows while things move: direct light as it is, and a bounce over a part of the directions, which
+// leaves of the others what surfaces reflected some steps ago. It says nothing about what is missing.
+void Links::Parts::part_bounce() {
+  const auto parts = static_cast<std::uint32_t>(settings.step_bounces * shaders::PARTS);
   gpu::Frame frame(device, times);
-  gather->bounce(frame, map, *table, settings.radiance, {next_half});
+  gather->bounce(frame, map, *table, *direct, settings.radiance, next_part, parts);
   frame.submit_and_wait();
-  next_half = 1 - next_half;
+  next_part = (next_part + parts) % shaders::PARTS;
   solution.residual = std::numeric_limits<double>::infinity();
   ++solution.bounces;
 }
@@ -367,7 +393,7 @@ void Links::Parts::converge(const std::function<bool(std::uint32_t)>& enough) {
   const bool step = std::exchange(stepped, false) && lit;
   if (!lit) start();
   const auto asked = step ? static_cast<std::uint32_t>(settings.step_bounces) : 0;
-  if (step && settings.step_bounces < 1) half_bounce();
+  if (step && settings.step_bounces < 1) part_bounce();
   // Packed radiance flickers in its last digits: light does not settle by it.
   if (settings.radiance == Radiance::packed)
     while (solution.bounces < asked) bounce(Radiance::packed);

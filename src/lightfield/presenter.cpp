@@ -13,7 +13,7 @@ std::vector<std::uint8_t> present(const gpu::Device& device, const scene::Scene&
                                   std::span<const glm::vec4> irradiance) {
   Geometry geometry(device, scene);
   const LightMap map(device, size);
-  const GeometryTexture geometry_texture(device);
+  GeometryTexture geometry_texture(device);
   const Brdf brdf(device);
   const ToneMap tone_map(device);
   const gpu::Buffer given =

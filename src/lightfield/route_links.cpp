@@ -59,8 +59,8 @@ void put(const gpu::Device& device, gpu::Buffer& buffer, const std::vector<T>& c
 
 // Of route_links, route_doubts and route_rest, each of which leaves out what it does not use.
 gpu::Interface look_interface(const LinkStore& store, const LinkTable& table) {
-  std::vector kinds(13, Kind::storage_buffer);
-  kinds[2] = kinds[4] = Kind::texel_buffer;
+  std::vector kinds(15, Kind::storage_buffer);
+  kinds[2] = kinds[4] = kinds[8] = Kind::texel_buffer;
   kinds[6] = Kind::storage_image;
   return {.kinds = kinds,
           .push_bytes = sizeof(shaders::RouteLinksConstants),
@@ -113,7 +113,7 @@ RouteLinks::RouteLinks(const gpu::Device& device, const LinkStore& store, const 
       receive_(device, "route_links", receivers_comp,
                {.kinds = {Kind::storage_buffer, Kind::storage_image, Kind::storage_image, Kind::storage_image,
                           Kind::storage_image, Kind::storage_buffer},
-                .push_bytes = sizeof(shaders::BounceConstants)}),
+                .push_bytes = sizeof(shaders::ReceiveConstants)}),
       cover_(device, "route_links", link_cover_comp,
              {.kinds = {Kind::storage_buffer, Kind::texel_buffer, Kind::texel_buffer, Kind::storage_image,
                         Kind::storage_buffer},
@@ -144,7 +144,7 @@ void RouteLinks::read_receivers(gpu::Frame& frame, const LightMap& map, const Li
   frame.compute(receive_,
                 {gpu::reads(table.texel_of), gpu::reads(map.position), gpu::reads(map.normal),
                  gpu::reads(map.face_normal), gpu::reads(map.near_walls), gpu::writes(receivers_)},
-                shaders::BounceConstants{.texels = table.texels, .radiance_scale = 1}, table.groups(), 1);
+                shaders::ReceiveConstants{.texels = table.texels}, table.groups(), 1);
 }
 
 void RouteLinks::find_cover(gpu::Frame& frame, const Geometry& geometry, const LightMap& map,
@@ -177,7 +177,7 @@ void RouteLinks::compare(gpu::Frame& frame, const LinkTable& table, const LinkTa
 }
 
 void RouteLinks::record(gpu::Frame& frame, const RegionBatch& batch, const Geometry& geometry,
-                        const LightMap& map, const LinkTable& table, std::span<const LinkTable::Chunk> chunks,
+                        const LightMap& map, const LinkTable& table, const Destination& to,
                         const LinkStore& store, std::uint32_t pixels, std::uint32_t limit,
                         const gpu::Buffer& counters) {
   put(device_, regions_, batch.regions);
@@ -212,26 +212,31 @@ void RouteLinks::record(gpu::Frame& frame, const RegionBatch& batch, const Geome
                 shaders::CountLayersConstants{.pixels = batch.rows * store.extent.width, .limit = limit},
                 many_groups, 1);
 
+  const auto lamps = to.is_table ? static_cast<std::uint32_t>(table.lamps.size()) : 0u;
   const auto look = [&](const gpu::ComputePipeline& pipeline, const LinkTable::Chunk& chunk,
                         std::uint32_t first_job, std::uint32_t groups) {
     frame.compute(pipeline,
                   {gpu::reads(store.layers), gpu::reads(store.filled), gpu::fetches(regions_),
                    gpu::reads(jobs_), gpu::fetches(receivers_), gpu::writes(doubts_), gpu::reads(map.position),
-                   gpu::reads(geometry.walls_first), gpu::reads(geometry.walls), gpu::writes(chunk.links),
-                   gpu::writes(counters), gpu::reads(tiles_), gpu::writes(rest_)},
+                   gpu::reads(geometry.walls_first), gpu::fetches(geometry.walls), gpu::writes(chunk.links),
+                   gpu::writes(counters), gpu::reads(tiles_), gpu::writes(rest_), gpu::reads(to.direct.lamps),
+                   gpu::writes(to.direct.sums)},
                   shaders::RouteLinksConstants{.size = pixels,
                                                .store_width = store.extent.width,
                                                .store_pixels = store.pixels(),
                                                .texels = table.texels,
                                                .first_pair = chunk.first_pair,
                                                .pairs = chunk.pairs,
-                                               .first_job = first_job},
+                                               .first_job = first_job,
+                                               .lamps = lamps,
+                                               .lamps_alike = table.lamps_alike,
+                                               .half_pairs = table.pairs / 2},
                   groups, 1);
   };
   // Jobs stand in the order of their pairs, and so of the table's chunks.
   std::vector<const LinkTable::Chunk*> touched;
   auto first = batch.jobs.begin();
-  for (const auto& chunk : chunks) {
+  for (const auto& chunk : to.chunks) {
     const auto end = std::find_if(first, batch.jobs.end(), [&](const shaders::RouteJob& job) {
       return static_cast<std::uint32_t>(batch.regions[job.region].place.z) >= chunk.first_pair + chunk.pairs;
     });
@@ -241,7 +246,7 @@ void RouteLinks::record(gpu::Frame& frame, const RegionBatch& batch, const Geome
     touched.push_back(&chunk);
     first = end;
   }
-  look(route_doubts_, chunks.front(), 0, many_groups);
+  look(route_doubts_, to.chunks.front(), 0, many_groups);
   for (const auto* chunk : touched) look(route_rest_, *chunk, 0, many_groups);
 }
 

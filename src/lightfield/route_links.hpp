@@ -9,6 +9,7 @@
 
 #include <span>
 
+#include "direct_light.hpp"
 #include "link_regions.hpp"
 #include "link_table.hpp"
 
@@ -44,12 +45,19 @@ class RouteLinks {
   void compare(gpu::Frame& frame, const LinkTable& table, const LinkTable::Chunk& chunk, std::uint32_t pair,
                const LinkTable::Chunk& again, const gpu::Buffer& counters) const;
 
+  // Where a batch's links go: to the table, whose direct light follows, or to a copy beside it.
+  struct Destination {
+    std::span<const LinkTable::Chunk> chunks;
+    const DirectLight& direct;  // of the table
+    bool is_table;
+  };
+
   // Records one batch into the frame, whose links go to the chunks of their pairs; its regions and jobs stay on
-  // the device until the next. `limit` layers are asked for; pixels with more, misses and unknown rays are
-  // added to `counters`.
+  // the device until the next. No two of its regions may be of the same pair. `limit` layers are asked for;
+  // pixels with more, misses and unknown rays are added to `counters`.
   void record(gpu::Frame& frame, const RegionBatch& batch, const Geometry& geometry, const LightMap& map,
-              const LinkTable& table, std::span<const LinkTable::Chunk> chunks, const LinkStore& store,
-              std::uint32_t pixels, std::uint32_t limit, const gpu::Buffer& counters);
+              const LinkTable& table, const Destination& to, const LinkStore& store, std::uint32_t pixels,
+              std::uint32_t limit, const gpu::Buffer& counters);
 
  private:
   const gpu::Device& device_;

@@ -23,7 +23,7 @@ StencilRouting::StencilRouting(const gpu::Device& device, const LayerStore& stor
              {.kinds = with_store(
                   store, {gpu::Kind::storage_image, gpu::Kind::storage_image, gpu::Kind::storage_image,
                           gpu::Kind::storage_image, gpu::Kind::storage_image, gpu::Kind::storage_buffer,
-                          gpu::Kind::storage_buffer, gpu::Kind::storage_image, gpu::Kind::storage_buffer}),
+                          gpu::Kind::texel_buffer, gpu::Kind::storage_image, gpu::Kind::storage_buffer}),
               .push_bytes = sizeof(shaders::RoutingConstants),
               .specialisation = {store.capacity, static_cast<std::uint32_t>(sort), store.samples}}) {}
 
@@ -34,7 +34,7 @@ void StencilRouting::record(gpu::Frame& frame, const shaders::PsfView& view, con
   bindings.insert(bindings.end(),
                   {gpu::reads(map.position), gpu::reads(map.normal), gpu::reads(map.face_normal),
                    gpu::writes(map.psf_irradiance), gpu::writes(map.cover), gpu::reads(geometry.walls_first),
-                   gpu::reads(geometry.walls), gpu::reads(map.near_walls), gpu::writes(counters)});
+                   gpu::fetches(geometry.walls), gpu::reads(map.near_walls), gpu::writes(counters)});
   frame.compute(route_, bindings,
                 shaders::RoutingConstants{.view = view, .size = store.size, .count = count ? 1u : 0u},
                 map.groups, map.groups);

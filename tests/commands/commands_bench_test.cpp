@@ -146,9 +146,9 @@ void Bench::expect_updates() {
   }
   EXPECT_EQ(header_of(out() / "choices.csv"), "scene,size,psf,choice,ms_p50,ms_p95,rel_rmse,rel_rmse_moving");
   const auto choices = table(out() / "choices.csv");
-  ASSERT_EQ(choices.size(), 8u);  // counts of PSFs, choices
+  ASSERT_EQ(choices.size(), 10u);  // counts of PSFs, choices
   EXPECT_EQ(choices[0].at("choice"), "default");
-  EXPECT_EQ(choices[1].at("choice"), "--step-bounces 1");
+  EXPECT_EQ(choices[1].at("choice"), "--step-bounces 0.5");
   EXPECT_LT(number(lines[2], "rel_rmse"), number(lines[0], "rel_rmse"));
   EXPECT_LT(number(lines[3], "rel_rmse"), number(lines[1], "rel_rmse"));
 }

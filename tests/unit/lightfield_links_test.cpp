@@ -89,6 +89,23 @@ TEST_F(LinksMethod, LinksOf32BitsSayTheSame) {
   EXPECT_GT(valid, 65535u);
 }
 
+// Two sealed rooms: what the bright one's light is summed in must not cost the dim one its own.
+TEST_F(LinksMethod, DimLightIsRightBesideBright) {
+  for (const float dim : {1e-2f, 1e-3f, 1e-6f}) {
+    SceneBuilder builder;
+    const glm::vec3 aside(4, 0, 0);
+    builder.box("bright room", glm::vec3(-1), glm::vec3(1), {0, 0, 0.5, 1},
+                builder.material(glm::vec3(0.5f), glm::vec3(1)), true);
+    builder.box("dim room", aside - 1.0f, aside + 1.0f, {0.5, 0, 1, 1},
+                builder.material(glm::vec3(0.5f), glm::vec3(dim)), true);
+    const auto irradiance = fresh(loaded(builder), {.size = 64, .psf = 96, .bounces = 3});
+    for (std::size_t texel = 0; texel < irradiance.size(); ++texel)
+      if (irradiance[texel].a > 0) {
+        ASSERT_NEAR(irradiance[texel].g / (pi * 1.75 * (texel % 64 < 32 ? 1 : dim)), 1, 1e-3) << dim;
+      }
+  }
+}
+
 class Moves : public LinksMethod {
  protected:
   const scene::Scene scene_ = cornell();
@@ -152,13 +169,37 @@ TEST_F(Moves, LinksAreLookedAtAgain) {
   EXPECT_LT(rel_rmse(links.irradiance(), fresh(scene_, settings_, offsets)), 2e-3);
 }
 
-// Half of the directions a step: each map is on its way to where all of them lead.
-TEST_F(Moves, HalfBouncesFollowAndArrive) {
+// Where nothing reflects there is nothing but direct light, of two lamps here: in a step it is there at once,
+// whichever part of the directions the step's bounce is over, and whatever came and went before has left
+// nothing behind.
+TEST_F(Moves, DirectLightFollowsAtOnce) {
+  auto black = scene_;
+  for (auto& material : black.materials) material.base_colour = glm::vec3(0);
+  black.materials[black.surfaces.back().material].emission = {1, 2, 3};  // of a cube
+  auto settings = settings_;
+  settings.step_bounces = 0.25f;
+  Links links(device(), black, settings);
+  auto offsets = at_rest(black);
+  links.solve(offsets);
+  std::mt19937 random(2);
+  const auto step = [&] { return 0.3f * (static_cast<float>(random() % 1001) / 500 - 1); };
+  for (int move = 0; move < 100; ++move) {
+    for (std::size_t body = 1; body < offsets.size(); ++body)  // through each other, too
+      offsets[body] = glm::clamp(offsets[body] + glm::vec3(step(), step(), step()), -1.0f, 1.0f);
+    links.update(offsets, [](std::uint32_t) { return true; });
+  }
+  const auto afresh = fresh(black, settings, offsets);
+  EXPECT_LT(rel_rmse(links.irradiance(), afresh), 2e-4) << "one link too much would be more";
+  EXPECT_GT(rel_rmse(fresh(black, settings), afresh), 0.02) << "the moves must matter";
+}
+
+// Parts of the directions a step: each map is on its way to where all of them lead.
+TEST_F(Moves, PartBouncesFollowAndArrive) {
   auto offsets = at_rest(scene_);
   offsets[1].x -= 0.3f;
   const auto afresh = fresh(scene_, settings_, offsets);
   std::map<float, double> missing;
-  for (const float bounces : {0.5f, 1.0f, 2.0f}) {
+  for (const float bounces : {0.25f, 0.5f, 1.0f, 2.0f}) {
     auto settings = settings_;
     settings.step_bounces = bounces;
     Links links(device(), scene_, settings);
@@ -170,6 +211,7 @@ TEST_F(Moves, HalfBouncesFollowAndArrive) {
     links.solve(offsets);
     EXPECT_LT(rel_rmse(links.irradiance(), afresh), 2e-3);
   }
+  EXPECT_GT(missing[0.25f], missing[0.5f]);
   EXPECT_GT(missing[0.5f], missing[1.0f]);
   EXPECT_GT(missing[1.0f], missing[2.0f]);
 }

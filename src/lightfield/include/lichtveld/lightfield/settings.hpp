@@ -27,9 +27,9 @@ struct Settings {
   ABuffer abuffer = ABuffer::stencil;
   Sort sort = Sort::compare_swap;
   Weights weights = Weights::solid_angle;
-  // links: bounces of the map after a move, 1.. or 0.5: over half of the directions, the next map over the
-  // others.
-  float step_bounces = 0.5f;
+  // links: bounces of the map after a move, 1.., or 0.5 or 0.25: over half or a quarter of the directions, in
+  // turn. Light straight from lamps is always of all.
+  float step_bounces = 0.25f;
   Radiance radiance = Radiance::packed;
   std::uint64_t seed = 0;  // of the directions' rotations and rasters: the same seed gives the same light map
 
@@ -40,7 +40,7 @@ struct Settings {
 void check(const Settings& settings);
 
 struct Solution {
-  std::uint32_t bounces = 0;  // one over half of the directions counts too
+  std::uint32_t bounces = 0;  // one over a part of the directions counts too
   // What may still be missing from E, as a share of its mean: largest change in the last bounce / (1 - max
   // albedo), which is more than all later bounces add. Infinite where some albedo is 1.
   double residual = 0;
