@@ -21,12 +21,6 @@ gpu::Buffer storage(const gpu::Device& device, const std::string& name, vk::Devi
           where,  texels};
 }
 
-std::vector<glm::vec4> weighed(const std::vector<Direction>& pairs) {
-  std::vector<glm::vec4> directions;
-  for (const auto& pair : pairs) directions.emplace_back(pair.along, pair.solid_angle);
-  return directions;
-}
-
 gpu::ComputePipeline gather_pipeline(const gpu::Device& device, const LinkTable& table, std::uint32_t words) {
   return {device,
           "gather",
@@ -39,10 +33,8 @@ gpu::ComputePipeline gather_pipeline(const gpu::Device& device, const LinkTable&
 
 }  // namespace
 
-Gather::Gather(const gpu::Device& device, const LinkTable& table, const std::vector<Direction>& pairs,
-               float scale)
-    : pairs_(static_cast<std::uint32_t>(pairs.size())),
-      scale_(scale),
+Gather::Gather(const gpu::Device& device, const LinkTable& table, float scale)
+    : scale_(scale),
       gather_packed_(gather_pipeline(device, table, 1)),
       gather_full_(gather_pipeline(device, table, 3)),
       end_(device, "gather", link_bounce_comp,
@@ -52,56 +44,55 @@ Gather::Gather(const gpu::Device& device, const LinkTable& table, const std::vec
             .push_bytes = sizeof(shaders::BounceConstants)}),
       packed_(storage(device, "lightfield/packed_radiance", (table.texels + 1) * sizeof(std::uint32_t))),
       full_(storage(device, "lightfield/full_radiance", (table.texels + 1) * 3 * sizeof(float))),
-      directions_(gpu::upload<glm::vec4>(device, "lightfield/pair_directions", weighed(pairs),
-                                         vk::BufferUsageFlagBits::eStorageBuffer, vectors)),
       sums_(storage(device, "lightfield/sums", shaders::PARTS * std::uint64_t{table.texels} * sizeof(glm::vec4),
                     gpu::Memory::device, vectors)),
       changes_(storage(device, "lightfield/changes", table.groups() * sizeof(glm::vec2), gpu::Memory::host)) {}
 
-void Gather::start(gpu::Frame& frame, const LightMap& map, const LinkTable& table,
-                   const DirectLight& direct) const {
+void Gather::start(gpu::Frame& frame, const KeptLinks& links) const {
   frame.clear("gather", packed_);
   frame.clear("gather", full_);
-  frame.clear("gather", map.total_irradiance, {});
+  frame.clear("gather", links.map().total_irradiance, {});
   frame.clear("gather", sums_);
-  end(frame, map, table, direct);
+  end(frame, links);
 }
 
-void Gather::bounce(gpu::Frame& frame, const LightMap& map, const LinkTable& table, const DirectLight& direct,
-                    Radiance radiance, std::uint32_t first, std::uint32_t parts) const {
+void Gather::bounce(gpu::Frame& frame, const KeptLinks& links, Radiance radiance, std::uint32_t first,
+                    std::uint32_t parts) const {
   for (std::uint32_t part = first; part < first + parts; ++part)
-    gather(frame, map, table, radiance, part % shaders::PARTS);
-  end(frame, map, table, direct);
+    gather(frame, links, radiance, part % shaders::PARTS);
+  end(frame, links);
 }
 
-void Gather::gather(gpu::Frame& frame, const LightMap& map, const LinkTable& table, Radiance radiance,
-                    std::uint32_t part) const {
+void Gather::gather(gpu::Frame& frame, const KeptLinks& links, Radiance radiance, std::uint32_t part) const {
+  const auto& table = links.table();
   // Parts of whole words of the table.
-  const std::uint32_t begin = pairs_ / 2 * part / shaders::PARTS * 2,
-                      finish = pairs_ / 2 * (part + 1) / shaders::PARTS * 2;
+  const std::uint32_t begin = table.pairs / 2 * part / shaders::PARTS * 2,
+                      finish = table.pairs / 2 * (part + 1) / shaders::PARTS * 2;
   bool add = false;
   for (const auto& chunk : table.chunks) {
     const auto first = std::max(begin, chunk.first_pair),
                last = std::min(finish, chunk.first_pair + chunk.pairs);
     if (first >= last) continue;
-    frame.compute(
-        radiance == Radiance::packed ? gather_packed_ : gather_full_,
-        {gpu::reads(chunk.links), gpu::reads(radiance == Radiance::packed ? packed_ : full_),
-         gpu::fetches(directions_), gpu::reads(table.texel_of), gpu::reads(map.normal), gpu::writes(sums_)},
-        shaders::GatherConstants{.texels = table.texels,
-                                 .first_pair = chunk.first_pair,
-                                 .pairs = chunk.pairs,
-                                 .first = first - chunk.first_pair,
-                                 .end = last - chunk.first_pair,
-                                 .part = part,
-                                 .add = add ? 1u : 0u},
-        table.groups(), 1);
+    frame.compute(radiance == Radiance::packed ? gather_packed_ : gather_full_,
+                  {gpu::reads(chunk.links), gpu::reads(radiance == Radiance::packed ? packed_ : full_),
+                   gpu::fetches(links.directions()), gpu::reads(table.texel_of), gpu::reads(links.map().normal),
+                   gpu::writes(sums_)},
+                  shaders::GatherConstants{.texels = table.texels,
+                                           .first_pair = chunk.first_pair,
+                                           .pairs = chunk.pairs,
+                                           .first = first - chunk.first_pair,
+                                           .end = last - chunk.first_pair,
+                                           .part = part,
+                                           .add = add ? 1u : 0u},
+                  table.groups(), 1);
     add = true;
   }
 }
 
-void Gather::end(gpu::Frame& frame, const LightMap& map, const LinkTable& table,
-                 const DirectLight& direct) const {
+void Gather::end(gpu::Frame& frame, const KeptLinks& links) const {
+  const auto& map = links.map();
+  const auto& table = links.table();
+  const auto& direct = links.direct();
   frame.compute(
       end_,
       {gpu::fetches(sums_), gpu::reads(direct.sums), gpu::reads(table.texel_of), gpu::reads(map.albedo),

@@ -5,26 +5,22 @@
 // of half a word and one or three of a word each.
 #pragma once
 
-#include "direct_light.hpp"
-#include "lichtveld/lightfield/directions.hpp"
+#include "kept_links.hpp"
 #include "lichtveld/lightfield/settings.hpp"
-#include "link_table.hpp"
 
 namespace lichtveld::lightfield {
 
 class Gather {
  public:
-  // `pairs`: the direction of each. `scale`: what radiance is multiplied by to fit its packing.
-  Gather(const gpu::Device& device, const LinkTable& table, const std::vector<Direction>& pairs, float scale);
+  // `scale`: what radiance is multiplied by to fit its packing.
+  Gather(const gpu::Device& device, const LinkTable& table, float scale);
 
   // E = 0, L = Le: no bounce yet.
-  void start(gpu::Frame& frame, const LightMap& map, const LinkTable& table, const DirectLight& direct) const;
+  void start(gpu::Frame& frame, const KeptLinks& links) const;
   // Over `parts` parts of the directions (of shaders::PARTS), from `first` on and round; of the others the sums
   // of before count on.
-  void bounce(gpu::Frame& frame, const LightMap& map, const LinkTable& table, const DirectLight& direct,
-              Radiance radiance, std::uint32_t first = 0, std::uint32_t parts = shaders::PARTS) const;
-
-  const gpu::Buffer& directions() const { return directions_; }  // vec4 a pair: xyz; w: solid angle [sr]
+  void bounce(gpu::Frame& frame, const KeptLinks& links, Radiance radiance, std::uint32_t first = 0,
+              std::uint32_t parts = shaders::PARTS) const;
 
   // After a bounce that the frame has waited for.
   struct Change {
@@ -34,15 +30,12 @@ class Gather {
   Change change(const LinkTable& table) const;
 
  private:
-  void gather(gpu::Frame& frame, const LightMap& map, const LinkTable& table, Radiance radiance,
-              std::uint32_t part) const;
-  void end(gpu::Frame& frame, const LightMap& map, const LinkTable& table, const DirectLight& direct) const;
+  void gather(gpu::Frame& frame, const KeptLinks& links, Radiance radiance, std::uint32_t part) const;
+  void end(gpu::Frame& frame, const KeptLinks& links) const;
 
-  std::uint32_t pairs_;
   float scale_;
   gpu::ComputePipeline gather_packed_, gather_full_, end_;
   gpu::Buffer packed_, full_;  // radiance without lamps [scaled]; that after the last texel stays black
-  gpu::Buffer directions_;     // vec4 a pair
   gpu::Buffer sums_;           // vec4 a texel, part by part
   gpu::Buffer changes_;        // vec2 a workgroup, host-visible
 };
