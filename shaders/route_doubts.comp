@@ -23,6 +23,6 @@ void main() {
                          is_between(receiver.near.y, place, away, face, blur, false);
     // With three walls in reach the two nearest do not decide.
     if (doubt != ray || between || length(away) + most_blur(blur) >= uintBitsToFloat(receiver.near.w))
-      rest[atomicAdd(counters.rest, 1u)] = ray;
+      rest[atomicAdd(counters.rest, 1u)] = uvec2(ray.x, between ? ray.y | WALL_BETWEEN : ray.y);
   }
 }

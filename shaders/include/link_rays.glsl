@@ -8,10 +8,11 @@ layout(binding = 2) uniform usamplerBuffer regions;    // rows.glsl
 layout(binding = 4) uniform usamplerBuffer receivers;  // of each valid texel, likewise
 layout(binding = 5) buffer Doubts { uvec2 doubts[]; };  // rays that are not done with: texel, region
 layout(binding = 10) buffer Counted { Counters counters; };
-layout(binding = 12) buffer Rest { uvec2 rest[]; };  // what is left of those
+layout(binding = 12) buffer Rest { uvec2 rest[]; };  // what is left of those, likewise
 layout(push_constant) uniform Push { RouteLinksConstants constants; };
 
-const uint NOTHING_SEEN = 0x80000000u;  // a doubt's region: no layer was found
+// What is known of such a ray, in its region's number: no layer was found; a wall stands before the nearest pixel.
+const uint NOTHING_SEEN = 0x80000000u, WALL_BETWEEN = 0x40000000u;
 layout(constant_id = 0) const uint CAPACITY = 16;
 #include "layer_link.glsl"
 #include "rows.glsl"

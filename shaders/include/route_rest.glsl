@@ -8,7 +8,7 @@ layout(binding = 8) uniform samplerBuffer walls;
 #include "receiver.glsl"
 #include "relink.glsl"
 
-void route(uint me, Region region) {
+void route(uint me, Region region, bool wall_at_nearest) {
   const Receiver receiver = receiver_at(receivers, me);
   const vec3 face = receiver.face_and_triangle.xyz;
   const vec4 place = receiver.place;
@@ -19,7 +19,7 @@ void route(uint me, Region region) {
   int link = -1;
   bool known = false;
   // As in stencil_routing: of the 2 x 2 pixels the nearest that tells what the texel sees.
-  for (uint choice = 0u; choice < 8u; ++choice) {
+  for (uint choice = wall_at_nearest ? 1u : 0u; choice < 8u; ++choice) {
     const ivec2 pixel =
         clamp(sight.nearest + beside_nearest(choice % 4u, sight.within), ivec2(0), ivec2(constants.size) - 1);
     const vec2 shift = shift_to(pixel, sight);
@@ -43,8 +43,9 @@ void route(uint me, Region region) {
 void main() {
   const uint count = counters.rest, all = gl_NumWorkGroups.x * gl_WorkGroupSize.x;
   for (uint index = gl_GlobalInvocationID.x; index < count; index += all) {
-    const Region region = region_at(regions, rest[index].y);
+    const uvec2 ray = rest[index];
+    const Region region = region_at(regions, ray.y & ~WALL_BETWEEN);
     const uint pair = uint(region.place.z);
-    if (pair >= constants.first_pair && pair < constants.first_pair + constants.pairs) route(rest[index].x, region);
+    if (pair >= constants.first_pair && pair < constants.first_pair + constants.pairs) route(ray.x, region, (ray.y & WALL_BETWEEN) != 0u);
   }
 }
