@@ -1,5 +1,5 @@
-// A bounce's end for linked texels: E = pi * (direct + indirect light) / sum of w. Then what the next gathers, L = albedo / pi * E,
-// and Le of what is no lamp.
+// A bounce's end for linked texels: E = pi * (direct + indirect light) / sum of w. Then what the next one gathers:
+// L = albedo / pi * E, and Le of what is no lamp.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shared.h"

@@ -1,4 +1,5 @@
-// A part of one bounce's sum over pairs: w L of what each texel sees, without the lamps, and w. Included by a shader that defines two_links().
+// A part of one bounce's sum over pairs: w L of what each texel sees, lamps' own light apart, and w. Included by a shader that
+// defines two_links().
 
 layout(local_size_x = TILE) in;
 layout(binding = 1) readonly buffer Radiance { uint radiance[]; };  // of each valid texel, then black

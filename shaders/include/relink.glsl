@@ -1,16 +1,13 @@
 // A link is replaced, and direct light with it: for each texel and half of the directions the sum of w Le of the lamps that
 // it sees, a whole number, so that what comes and goes again leaves nothing behind. Included by a shader that defines
 // link_at() and put_link() for its table. A texel's link must not be replaced twice in one dispatch.
+#include "direct_share.glsl"
 
 layout(binding = 13) readonly buffer Lamps { float lamps[]; };  // Le of each, three channels [scaled]
 layout(binding = 14) buffer Direct { uint direct[]; };          // three channels of each texel and half
 
-uint direct_light(uint link, uint channel, vec3 normal, vec4 direction) {
-  if (link >= constants.lamps) return 0u;
-  // To the last bit the same whichever shader computes it.
-  precise const float weight = abs(dot(normal, direction.xyz)) * direction.w;
-  precise const float light = weight * lamps[3u * link + channel];
-  return uint(light + 0.5);
+uint share_of(uint link, uint channel, vec3 normal, vec4 direction) {
+  return link < constants.lamps ? direct_share(lamps[3u * link + channel], normal, direction) : 0u;
 }
 
 void relink(uint me, vec3 normal, Region region, uint link) {
@@ -18,11 +15,10 @@ void relink(uint me, vec3 normal, Region region, uint link) {
   const uint was = link_at(nth, me, constants.pairs);
   put_link(nth, me, link, constants.pairs);
   const bool changes = min(link, was) < constants.lamps && max(link, was) >= constants.lamps_alike;
-  // A loop, which a device that runs all lanes through both sides of a branch leaves out where none has a change.
-  const uint channels = changes ? 3u : 0u;
+  const uint channels = changes ? 3u : 0u;  // as in direct_light.comp
   for (uint channel = 0u; channel < channels; ++channel) {
     const uint sum = 3u * (2u * me + (pair < constants.half_pairs ? 0u : 1u)) + channel;
-    atomicAdd(direct[sum], direct_light(link, channel, normal, region.view.direction) -
-                               direct_light(was, channel, normal, region.view.direction));
+    atomicAdd(direct[sum], share_of(link, channel, normal, region.view.direction) -
+                               share_of(was, channel, normal, region.view.direction));
   }
 }

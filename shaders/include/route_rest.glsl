@@ -46,6 +46,7 @@ void main() {
     const uvec2 ray = rest[index];
     const Region region = region_at(regions, ray.y & ~WALL_BETWEEN);
     const uint pair = uint(region.place.z);
-    if (pair >= constants.first_pair && pair < constants.first_pair + constants.pairs) route(ray.x, region, (ray.y & WALL_BETWEEN) != 0u);
+    if (pair >= constants.first_pair && pair < constants.first_pair + constants.pairs)
+      route(ray.x, region, (ray.y & WALL_BETWEEN) != 0u);
   }
 }

@@ -143,6 +143,13 @@ struct GatherConstants {
   uint add;                // 1: to the sum that is there
 };
 
+struct DirectConstants {
+  uint texels;
+  uint first_pair, pairs;  // of the table's chunk
+  uint lamps;
+  uint half_pairs;  // pairs of either half of the directions
+};
+
 struct CoverConstants {
   uint texels;
   uint pairs;     // of the table's first chunk

@@ -95,13 +95,13 @@ void Gather::end(gpu::Frame& frame, const KeptLinks& links) const {
   const auto& direct = links.direct();
   frame.compute(
       end_,
-      {gpu::fetches(sums_), gpu::reads(direct.sums), gpu::reads(table.texel_of), gpu::reads(map.albedo),
+      {gpu::fetches(sums_), gpu::reads(direct.sums()), gpu::reads(table.texel_of), gpu::reads(map.albedo),
        gpu::reads(map.emission), gpu::writes(map.total_irradiance), gpu::writes(map.half_difference),
        gpu::writes(packed_), gpu::writes(changes_), gpu::writes(full_)},
       shaders::BounceConstants{.texels = table.texels,
                                .lamps = static_cast<std::uint32_t>(table.lamps.size()),
                                .radiance_scale = scale_,
-                               .direct_scale = direct.scale},
+                               .direct_scale = direct.scale()},
       table.groups(), 1);
   frame.to_host(changes_);
 }

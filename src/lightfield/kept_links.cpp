@@ -84,6 +84,7 @@ void KeptLinks::link(const std::vector<glm::vec3>& to, Solution& solution) {
   // All views are scaled by the scene's sphere; if that changes, so does every raster.
   const bool all = offsets_.empty() || !same(geometry_.sphere, sphere_before);
   const auto before = std::exchange(offsets_, {});  // should this fail half-way, nothing is known
+  summed_ = before.empty();                         // the first links of all sum it up
   const auto tiles = table_->boxes(to);
   std::vector<std::uint32_t> groups(table_->groups());
   if (all) {
@@ -101,6 +102,13 @@ void KeptLinks::link(const std::vector<glm::vec3>& to, Solution& solution) {
   find_cover(groups);
   checked_ = 0;
   offsets_ = to;
+}
+
+void KeptLinks::sum_direct() {
+  if (std::exchange(summed_, true)) return;
+  gpu::Frame frame(device_, times_);
+  direct_->sum(frame, map_, *table_, directions_);
+  frame.submit_and_wait();
 }
 
 KeptLinks::Layered& KeptLinks::layered() {

@@ -24,6 +24,8 @@ class KeptLinks {
   const std::vector<glm::vec3>& offsets() const { return offsets_; }
   // Brings the links to where the bodies are, and what it counts into `solution`.
   void link(const std::vector<glm::vec3>& to, Solution& solution);
+  // Sums direct light up afresh, where links have changed since: what they have kept, by construction.
+  void sum_direct();
   // As Links::check.
   LinkCheck check(std::uint32_t pairs);
   // Writes map().shown.
@@ -66,6 +68,7 @@ class KeptLinks {
   gpu::Buffer directions_;  // of pairs_
   std::unique_ptr<LinkTable> table_;
   std::unique_ptr<DirectLight> direct_;
+  bool summed_ = false;     // direct light, since the last move
   std::uint32_t capacity_;  // layers of a pixel's list
   std::unique_ptr<Layered> layered_;
   std::optional<LinkTable::Chunk> again_;  // links of two pairs, to compare

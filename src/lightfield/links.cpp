@@ -158,6 +158,7 @@ void Links::Parts::part_bounce() {
 // As many bounces as are asked for; or until the bound is met, or falls no more, for rounding.
 void Links::Parts::converge(const std::function<bool(std::uint32_t)>& enough) {
   if (settings.bounces) {
+    links.sum_direct();
     start();
     while (solution.bounces < *settings.bounces) bounce(Radiance::full);
     solution.settled = true;
@@ -171,6 +172,7 @@ void Links::Parts::converge(const std::function<bool(std::uint32_t)>& enough) {
   if (settings.radiance == Radiance::packed)
     while (solution.bounces < asked) bounce(Radiance::packed);
   if (solution.bounces > 0 && enough(solution.bounces)) return;
+  links.sum_direct();
   double least = std::numeric_limits<double>::infinity();
   std::uint32_t since = 0;
   do {

@@ -212,15 +212,15 @@ void RouteLinks::record(gpu::Frame& frame, const RegionBatch& batch, const Geome
                 shaders::CountLayersConstants{.pixels = batch.rows * store.extent.width, .limit = limit},
                 many_groups, 1);
 
-  const auto lamps = to.is_table ? static_cast<std::uint32_t>(table.lamps.size()) : 0u;
+  const auto lamps = to.keeps_direct ? static_cast<std::uint32_t>(table.lamps.size()) : 0u;
   const auto look = [&](const gpu::ComputePipeline& pipeline, const LinkTable::Chunk& chunk,
                         std::uint32_t first_job, std::uint32_t groups) {
     frame.compute(pipeline,
                   {gpu::reads(store.layers), gpu::reads(store.filled), gpu::fetches(regions_),
                    gpu::reads(jobs_), gpu::fetches(receivers_), gpu::writes(doubts_), gpu::reads(map.position),
                    gpu::reads(geometry.walls_first), gpu::fetches(geometry.walls), gpu::writes(chunk.links),
-                   gpu::writes(counters), gpu::reads(tiles_), gpu::writes(rest_), gpu::reads(to.direct.lamps),
-                   gpu::writes(to.direct.sums)},
+                   gpu::writes(counters), gpu::reads(tiles_), gpu::writes(rest_), gpu::reads(to.direct.lamps()),
+                   gpu::writes(to.direct.sums())},
                   shaders::RouteLinksConstants{.size = pixels,
                                                .store_width = store.extent.width,
                                                .store_pixels = store.pixels(),

@@ -45,11 +45,11 @@ class RouteLinks {
   void compare(gpu::Frame& frame, const LinkTable& table, const LinkTable::Chunk& chunk, std::uint32_t pair,
                const LinkTable::Chunk& again, const gpu::Buffer& counters) const;
 
-  // Where a batch's links go: to the table, whose direct light follows, or to a copy beside it.
+  // Where a batch's links go.
   struct Destination {
     std::span<const LinkTable::Chunk> chunks;
-    const DirectLight& direct;  // of the table
-    bool is_table;
+    const DirectLight& direct;
+    bool keeps_direct;  // direct light follows the links that are replaced
   };
 
   // Records one batch into the frame, whose links go to the chunks of their pairs; its regions and jobs stay on
