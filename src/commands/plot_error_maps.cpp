@@ -73,10 +73,11 @@ Column column_of(const BenchRow& row, const Truth& truth, double mean) {
     return double{d.r + d.g + d.b} / 3;
   };
   const double ms = median(row.total_ms);
-  return {fmt::format("{} directions{}", row.settings.psf, equal ? ", equal weights" : ""),
-          fmt::format("rel_rmse {:.1f} %, {}", 100 * row.error.rel_rmse,
-                      ms < 1000 ? fmt::format("{:.0f} ms", ms) : fmt::format("{:.1f} s", ms / 1000)),
-          shown(row.map, exact, mean), errors(exact, mean, difference)};
+  return {
+      fmt::format("{}, {} directions{}", name_of(row.method), row.settings.psf, equal ? ", equal weights" : ""),
+      fmt::format("rel_rmse {:.1f} %, {}", 100 * row.error.rel_rmse,
+                  ms < 1000 ? fmt::format("{:.0f} ms", ms) : fmt::format("{:.1f} s", ms / 1000)),
+      shown(row.map, exact, mean), errors(exact, mean, difference)};
 }
 
 // Few, middle and most directions, and most with equal weights.

@@ -188,6 +188,7 @@ void KeptLinks::route(const std::vector<Part>& parts, const TileBoxes& tiles, So
 
 LinkCheck KeptLinks::check(std::uint32_t pairs) {
   LinkCheck all;
+  if (offsets_.empty()) return all;  // nothing is linked, or linking has failed
   for (std::uint32_t done = 0; done < pairs && checked_ < table_->pairs; done += 2) {
     const auto two = check_two();
     all.links += two.links;

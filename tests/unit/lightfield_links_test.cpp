@@ -149,6 +149,7 @@ TEST_F(Moves, ManyMovesLeaveNoTrace) {
 TEST_F(Moves, LinksAreLookedAtAgain) {
   Links links(device(), scene_, settings_);
   auto offsets = at_rest(scene_);
+  EXPECT_EQ(links.check(2).links, 0u) << "there are none yet";
   const auto solution = links.solve(offsets);
   std::uint64_t misses = 0, looked_at = 0;
   for (std::uint32_t pair = 0; pair < settings_.psf / 2; pair += 2) {

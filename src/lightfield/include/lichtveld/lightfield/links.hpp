@@ -36,7 +36,7 @@ class Links {
   Solution update(const std::vector<glm::vec3>& offsets, const std::function<bool(std::uint32_t)>& enough);
 
   // Routes up to `pairs` pairs of directions again, in full, and compares: those that have not been looked at
-  // since the last move. Nothing once all have. After solve() or update(). None is expected to differ. (A
+  // since the last move. Nothing once all have, or before the first solve() or update(). None is expected to differ. (A
   // pixel's centre on the border of two texels may see either.)
   LinkCheck check(std::uint32_t pairs);
 
