@@ -19,8 +19,8 @@ import { executable, play, root, scenePath } from '../tests/e2e/programs.js';
 
 const folder = join(root, 'docs/pictures');
 const quality = ['--size', '256', '--psf', '384', '--bounces', '3'];
-/** Light on its way down, to the right and out of the room: the blocks' shadows fall on walls that it reaches. */
-const shownPsf = 188;
+/** Light on its way down: the blocks' and cubes' shadows fall on the floor. */
+const shownPsf = 108;
 /** Bytes: pictures travel with every clone. */
 const largest = 300_000;
 const gap = 12;
@@ -37,6 +37,13 @@ const twice = ['--resize:filter=box', '200%', '-d', 'uint8'];
 const grey = ['--ch', '0,0,0', '--chnames', 'R,G,B'];
 /** Linear light to the screen's 8 bits; `exposure` maps it to 0..1. */
 const light = (exposure) => ['--ch', 'R,G,B', '--mulc', exposure, '--colorconvert', 'linear', 'sRGB', ...twice];
+
+/** Throws where all of an image is black: another set of directions has another `shownPsf`. */
+function mustShowSomething(image) {
+  const stats = execFileSync('oiiotool', ['--stats', image], { encoding: 'utf8' });
+  const [, most] = stats.match(/Stats Max: (\S+)/) ?? [];
+  if (!(Number(most) > 0)) throw new Error(`${image} is black: choose another shownPsf`);
+}
 
 /** The output of every pass, from a bake that writes them down. */
 function drawPasses() {
@@ -75,6 +82,7 @@ function drawPasses() {
     const layer = (n) => [exr(`emit_radiance.layer${n}`), ...depth];
     const lamp = [exr('emit_radiance.layer0'), ...light(0.1)];
     oiiotool(...layer(0), ...layer(1), ...layer(2), ...lamp, ...sheet, '-o', png('emit_radiance'));
+    mustShowSomething(exr('stencil_routing.psf_irradiance'));
     // One of 384 directions brings this share of a texel's irradiance.
     oiiotool(exr('stencil_routing.psf_irradiance'), ...light(2.5), '-o', png('stencil_routing'));
     oiiotool(exr('blend.total_irradiance'), ...light(0.04), '-o', png('blend'));
