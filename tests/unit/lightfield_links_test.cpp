@@ -313,6 +313,25 @@ TEST_F(LinksMethod, DoubleSidedLampsShineBothWaysAndNotOnThemselves) {
   }
 }
 
+// Walls on another triangle say nothing of rays that see nothing: a box out of the floor's sight stands right
+// below it, or beside it.
+TEST_F(LinksMethod, WallsElsewhereDoNotMatter) {
+  const auto light_over = [&](float x) {
+    SceneBuilder builder;
+    const int black = builder.material(glm::vec3(0));
+    square(builder, "cellar", -3, false, chart_c, black, 2.5f);
+    builder.box("box", {x - 0.5f, -3, -0.7f}, {x + 0.5f, -2, 0.7f}, chart_d, black);
+    square(builder, "lamp", 1, true, chart_a, builder.material(glm::vec3(0), glm::vec3(10)));
+    square(builder, "floor", -1, false, chart_b, builder.material(glm::vec3(0.5)));
+    return fresh(loaded(builder), {.size = 64, .psf = 384, .bounces = 1});
+  };
+  const auto below = light_over(0), beside = light_over(1.8f);
+  for (std::size_t texel = 0; texel < below.size(); ++texel)
+    if (texel % 64 >= 32 && texel / 64 < 32) {
+      ASSERT_EQ(below[texel], beside[texel]) << texel % 64 << ", " << texel / 64;
+    }
+}
+
 TEST_F(LinksMethod, NothingThatEmitsGivesBlack) {
   const auto scene = furnace(0.5f, 0);
   Links links(device(), scene, {.size = 32, .psf = 24});
