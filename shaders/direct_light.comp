@@ -4,7 +4,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "shared.h"
 #include "links.glsl"
-#include "direct_share.glsl"
+#include "direct_light.glsl"
 
 layout(local_size_x = TILE) in;
 layout(constant_id = 0) const uint BITS = 16;  // of a link
@@ -13,7 +13,7 @@ layout(binding = 1) uniform samplerBuffer directions;  // xyz; w: solid angle [s
 layout(binding = 2) readonly buffer TexelOf { uint texel_of[]; };
 layout(binding = 3, rgba32f) uniform readonly image2D normal;
 layout(binding = 4) readonly buffer Lamps { float lamps[]; };  // Le of each, three channels [scaled]
-layout(binding = 5) buffer Direct { uint direct[]; };          // three channels of each texel and half
+layout(binding = 5) buffer Direct { uint direct[]; };          // direct_light.glsl
 layout(push_constant) uniform Push { DirectConstants constants; };
 
 void main() {
@@ -31,7 +31,7 @@ void main() {
       const uint nth = share / 3u, channel = share % 3u, pair = constants.first_pair + word * each + nth;
       const uint link = each == 1u ? links : links >> 16u * nth & 0xffffu;
       if (link < constants.lamps)
-        direct[3u * (2u * me + (pair < constants.half_pairs ? 0u : 1u)) + channel] +=
+        direct[direct_at(me, pair < constants.half_pairs ? 0u : 1u, channel)] +=
             direct_share(lamps[3u * link + channel], n, texelFetch(directions, int(pair)));
     }
   }

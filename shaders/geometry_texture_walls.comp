@@ -7,7 +7,7 @@ layout(local_size_x = GROUP, local_size_y = GROUP) in;
 layout(binding = 0, rgba32f) uniform readonly image2D position;
 layout(binding = 1, rgba32f) uniform readonly image2D face_normal;
 layout(binding = 2) readonly buffer WallsFirst { uint walls_first[]; };  // of each triangle in walls; one more at the end
-layout(binding = 3) uniform samplerBuffer walls;                       // two ends each [m]
+layout(binding = 3) uniform samplerBuffer walls;                         // two ends each [m]
 layout(binding = 4, rgba32ui) uniform writeonly uimage2D near_walls;     // as LightMap::near_walls
 
 float distance_to(uint wall, vec3 p) {

@@ -3,6 +3,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shared.h"
+#include "direct_light.glsl"
 #include "packed_radiance.glsl"
 
 layout(local_size_x = TILE) in;
@@ -23,10 +24,12 @@ shared vec2 partial[TILE];
 
 // From half of the directions. rgb: sum of w L, lamps with it; a: of w.
 vec4 received(uint me, uint half_of) {
-  const uint first = half_of * PARTS / 2u, at = 3u * (2u * me + half_of);
+  const uint first = half_of * PARTS / 2u;
   vec4 sum = vec4(0.0);
   for (uint part = first; part < first + PARTS / 2u; ++part) sum += texelFetch(sums, int(part * constants.texels + me));
-  const vec3 from_lamps = vec3(direct[at], direct[at + 1u], direct[at + 2u]) / constants.direct_scale;
+  vec3 from_lamps;
+  for (uint channel = 0u; channel < 3u; ++channel)
+    from_lamps[channel] = float(direct[direct_at(me, half_of, channel)]) / constants.direct_scale;
   return vec4(sum.rgb / constants.radiance_scale + from_lamps, sum.a);
 }
 

@@ -146,8 +146,8 @@ struct GatherConstants {
 struct DirectConstants {
   uint texels;
   uint first_pair, pairs;  // of the table's chunk
-  uint lamps;
-  uint half_pairs;  // pairs of either half of the directions
+  uint lamps;              // texels from the first on whose light is summed
+  uint half_pairs;         // pairs of either half of the directions
 };
 
 struct CoverConstants {
@@ -168,9 +168,9 @@ struct ReceiveConstants {
 
 struct BounceConstants {
   uint texels;
-  uint lamps;             // texels from the first on whose light the direct sums hold
-  float radiance_scale;   // what radiance is multiplied by before it is packed
-  float direct_scale;     // what w Le is multiplied by in direct sums
+  uint lamps;            // texels from the first on whose light the direct sums hold
+  float radiance_scale;  // what radiance is multiplied by before it is packed
+  float direct_scale;    // what w Le is multiplied by in direct sums
 };
 
 // What a solve counts, summed over PSFs.

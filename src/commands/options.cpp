@@ -158,9 +158,8 @@ void add_links_options(CLI::App& command, lightfield::Settings& settings) {
       .add_option(
           "--step-bounces", settings.step_bounces,
           "Of --method links: bounces of the map after a move, 1.., or 0.5 or 0.25: one over half or a quarter "
-          "of "
-          "the directions, in turn; what is missing follows with the next maps. Light straight from lamps is "
-          "always there")
+          "of the directions, in turn; what is missing follows with the next maps. Light straight from lamps "
+          "is always there")
       ->capture_default_str();
   add_choice(
       command, "--radiance", settings.radiance, radiances,

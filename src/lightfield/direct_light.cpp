@@ -1,6 +1,5 @@
 #include "direct_light.hpp"
 
-#include <algorithm>
 #include <numbers>
 
 #include "shaders/direct_light.comp.h"
@@ -16,12 +15,6 @@ using gpu::Kind;
 constexpr float most_weight = 2 * std::numbers::pi_v<float>;
 constexpr float most_sum = 0x1p31f;
 
-float scale_for(const std::vector<glm::vec3>& lamps) {
-  float most = 0;
-  for (const auto& lamp : lamps) most = std::max({most, lamp.r, lamp.g, lamp.b});
-  return most > 0 ? most_sum / (most_weight * most) : 1;
-}
-
 gpu::Buffer scaled(const gpu::Device& device, const std::vector<glm::vec3>& lamps, float scale) {
   std::vector<glm::vec3> light;
   for (const auto& lamp : lamps) light.push_back(scale * lamp);
@@ -36,7 +29,7 @@ DirectLight::DirectLight(const gpu::Device& device, const LinkTable& table)
                       Kind::storage_buffer, Kind::storage_buffer},
             .push_bytes = sizeof(shaders::DirectConstants),
             .specialisation = {table.bits}}),
-      scale_(scale_for(table.lamps)),
+      scale_(table.brightest > 0 ? most_sum / (most_weight * table.brightest) : 1),
       lamps_(scaled(device, table.lamps, scale_)),
       sums_(device, "lightfield/direct_light", std::uint64_t{table.texels} * 2 * sizeof(glm::uvec3),
             vk::BufferUsageFlagBits::eStorageBuffer | vk::BufferUsageFlagBits::eTransferDst) {
@@ -56,7 +49,7 @@ void DirectLight::sum(gpu::Frame& frame, const LightMap& map, const LinkTable& t
                   shaders::DirectConstants{.texels = table.texels,
                                            .first_pair = chunk.first_pair,
                                            .pairs = chunk.pairs,
-                                           .lamps = static_cast<std::uint32_t>(table.lamps.size()),
+                                           .lamps = table.lamp_count(),
                                            .half_pairs = table.pairs / 2},
                   table.groups(), 1);
 }

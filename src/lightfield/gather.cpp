@@ -99,7 +99,7 @@ void Gather::end(gpu::Frame& frame, const KeptLinks& links) const {
        gpu::reads(map.emission), gpu::writes(map.total_irradiance), gpu::writes(map.half_difference),
        gpu::writes(packed_), gpu::writes(changes_), gpu::writes(full_)},
       shaders::BounceConstants{.texels = table.texels,
-                               .lamps = static_cast<std::uint32_t>(table.lamps.size()),
+                               .lamps = table.lamp_count(),
                                .radiance_scale = scale_,
                                .direct_scale = direct.scale()},
       table.groups(), 1);

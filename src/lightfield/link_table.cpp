@@ -32,16 +32,15 @@ std::vector<std::uint32_t> valid_texels(const std::vector<glm::vec4>& positions,
   return found;
 }
 
-float brightest(const glm::vec4& emission) {
+float most_of(const glm::vec4& emission) {
   return std::max({emission.r, emission.g, emission.b});
 }
 
 // Moves the lamps to the front and returns what each sends.
-std::vector<glm::vec3> lamps_first(std::vector<std::uint32_t>& valid, const std::vector<glm::vec4>& emission) {
-  float most = 0;
-  for (const auto texel : valid) most = std::max(most, brightest(emission[texel]));
+std::vector<glm::vec3> lamps_first(std::vector<std::uint32_t>& valid, const std::vector<glm::vec4>& emission,
+                                   float brightest) {
   const auto end = std::stable_partition(valid.begin(), valid.end(), [&](std::uint32_t texel) {
-    return brightest(emission[texel]) > dimmest_lamp * most;
+    return most_of(emission[texel]) > dimmest_lamp * brightest;
   });
   std::vector<glm::vec3> lamps;
   for (auto texel = valid.begin(); texel != end; ++texel) lamps.emplace_back(emission[*texel]);
@@ -92,7 +91,9 @@ LinkTable::LinkTable(const gpu::Device& device, const scene::Scene& scene, const
   const auto positions = gpu::download<glm::vec4>(device, map.position);
   const auto faces = gpu::download<glm::vec4>(device, map.face_normal);
   auto valid = valid_texels(positions, map.size);
-  lamps = lamps_first(valid, gpu::download<glm::vec4>(device, map.emission));
+  const auto emission = gpu::download<glm::vec4>(device, map.emission);
+  for (const auto texel : valid) brightest = std::max(brightest, most_of(emission[texel]));
+  lamps = lamps_first(valid, emission, brightest);
   while (lamps_alike < lamps.size() && lamps[lamps_alike] == lamps[0]) ++lamps_alike;
   const auto bodies = body_of_triangles(scene);
   texels = static_cast<std::uint32_t>(valid.size());

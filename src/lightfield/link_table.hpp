@@ -45,11 +45,13 @@ struct LinkTable {
   std::uint32_t pairs = 0;        // of directions
   std::uint32_t bits = 16;        // of a link
   std::uint32_t lamps_alike = 0;  // of the lamps, from the first on, that send the same
+  float brightest = 0;            // of the lamps, any channel [W m^-2 sr^-1]
   std::vector<glm::vec3> lamps;   // Le of the texels that come first [W m^-2 sr^-1]
   std::vector<Chunk> chunks;
   gpu::Buffer texel_of;  // uint: the atlas texel of each number
   gpu::Image number;     // uint: the number of each atlas texel's source; `texels` outside charts and gutters
 
+  std::uint32_t lamp_count() const { return static_cast<std::uint32_t>(lamps.size()); }
   std::uint32_t groups() const { return (texels + shaders::TILE - 1) / shaders::TILE; }  // workgroups over all
   std::uint32_t tile = 64;  // texels that are routed together: a vector of the device's
   TileBoxes boxes(const std::vector<glm::vec3>& offsets) const;

@@ -22,22 +22,16 @@ constexpr std::uint32_t patience = 8;
 constexpr float most_gain = 1e4f;
 constexpr float packing_limit = 60000;
 
-struct Brightest {
-  float emission = 0, albedo = 0;
-};
-
-Brightest brightest(const gpu::Device& device, const LightMap& map) {
-  Brightest found;
-  for (const auto& e : gpu::download<glm::vec4>(device, map.emission))
-    found.emission = std::max({found.emission, e.r, e.g, e.b});
+float highest_albedo(const gpu::Device& device, const LightMap& map) {
+  float highest = 0;
   for (const auto& a : gpu::download<glm::vec4>(device, map.albedo))
-    found.albedo = std::max({found.albedo, a.r, a.g, a.b});
-  return found;
+    highest = std::max({highest, a.r, a.g, a.b});
+  return highest;
 }
 
-float radiance_scale(const Brightest& of) {
-  const float gain = of.albedo < 1 ? std::min(1 / (1 - of.albedo), most_gain) : most_gain;
-  return of.emission > 0 ? packing_limit / (of.emission * gain) : 1;
+float radiance_scale(float emission, float albedo) {
+  const float gain = albedo < 1 ? std::min(1 / (1 - albedo), most_gain) : most_gain;
+  return emission > 0 ? packing_limit / (emission * gain) : 1;
 }
 
 }  // namespace
@@ -49,8 +43,8 @@ struct Links::Parts {
         links(device, scene, settings, times),
         brdf(device),
         tone_map(device),
-        brightest_of_scene(brightest(device, links.map())),
-        gather(device, links.table(), radiance_scale(brightest_of_scene)) {}
+        albedo(highest_albedo(device, links.map())),
+        gather(device, links.table(), radiance_scale(links.table().brightest, albedo)) {}
 
   const gpu::Device& device;
   const Settings settings;
@@ -58,7 +52,7 @@ struct Links::Parts {
   KeptLinks links;
   Brdf brdf;
   ToneMap tone_map;
-  Brightest brightest_of_scene;
+  float albedo;  // the highest of the scene
   Gather gather;
   bool lit = false;             // there is light to start from
   bool stepped = false;         // the links have changed since the last bounce
@@ -140,7 +134,7 @@ void Links::Parts::bounce(Radiance radiance) {
   frame.submit_and_wait();
   ++solution.bounces;
   const auto change = gather.change(links.table());
-  solution.residual = bound_on_missing(change.most, brightest_of_scene.albedo, change.mean);
+  solution.residual = bound_on_missing(change.most, albedo, change.mean);
 }
 
 // What serve shows while things move: direct light as it is, and a bounce over a part of the directions, which

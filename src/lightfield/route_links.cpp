@@ -212,7 +212,7 @@ void RouteLinks::record(gpu::Frame& frame, const RegionBatch& batch, const Geome
                 shaders::CountLayersConstants{.pixels = batch.rows * store.extent.width, .limit = limit},
                 many_groups, 1);
 
-  const auto lamps = to.keeps_direct ? static_cast<std::uint32_t>(table.lamps.size()) : 0u;
+  const auto lamps = to.keeps_direct ? table.lamp_count() : 0u;
   const auto look = [&](const gpu::ComputePipeline& pipeline, const LinkTable::Chunk& chunk,
                         std::uint32_t first_job, std::uint32_t groups) {
     frame.compute(pipeline,

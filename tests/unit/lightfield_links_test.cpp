@@ -108,6 +108,11 @@ TEST_F(LinksMethod, DimLightIsRightBesideBright) {
 
 class Moves : public LinksMethod {
  protected:
+  // As no player could: through walls and through other cubes.
+  static void nudge(glm::vec3& offset, std::mt19937& random) {
+    const auto step = [&] { return 0.3f * (static_cast<float>(random() % 1001) / 500 - 1); };
+    offset = glm::clamp(offset + glm::vec3(step(), step(), step()), -1.0f, 1.0f);
+  }
   const scene::Scene scene_ = cornell();
   const Settings settings_{.size = 64, .psf = 96};
 };
@@ -129,10 +134,9 @@ TEST_F(Moves, ManyMovesLeaveNoTrace) {
   auto offsets = at_rest(scene_);
   links.solve(offsets);
   std::mt19937 random(1);
-  const auto step = [&] { return 0.3f * (static_cast<float>(random() % 1001) / 500 - 1); };
   for (int move = 0; move < 1000; ++move) {
     const auto body = 1 + random() % 2;
-    offsets[body] = glm::clamp(offsets[body] + glm::vec3(step(), step(), step()), -1.0f, 1.0f);
+    nudge(offsets[body], random);
     links.update(offsets, [](std::uint32_t) { return true; });
   }
   links.solve(offsets);
@@ -183,10 +187,9 @@ TEST_F(Moves, DirectLightFollowsAtOnce) {
   auto offsets = at_rest(black);
   links.solve(offsets);
   std::mt19937 random(2);
-  const auto step = [&] { return 0.3f * (static_cast<float>(random() % 1001) / 500 - 1); };
   for (int move = 0; move < 100; ++move) {
     for (std::size_t body = 1; body < offsets.size(); ++body)  // through each other, too
-      offsets[body] = glm::clamp(offsets[body] + glm::vec3(step(), step(), step()), -1.0f, 1.0f);
+      nudge(offsets[body], random);
     links.update(offsets, [](std::uint32_t) { return true; });
   }
   const auto afresh = fresh(black, settings, offsets);
