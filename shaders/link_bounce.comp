@@ -4,7 +4,6 @@
 #extension GL_GOOGLE_include_directive : require
 #include "shared.h"
 #include "direct_light.glsl"
-#include "packed_radiance.glsl"
 
 layout(local_size_x = TILE) in;
 layout(binding = 0) uniform samplerBuffer sums;                 // as gather.glsl's
@@ -14,9 +13,8 @@ layout(binding = 3, rgba32f) uniform readonly image2D albedo;
 layout(binding = 4, rgba32f) uniform readonly image2D emission;
 layout(binding = 5, rgba32f) uniform image2D total_irradiance;           // rgb: E [W m^-2]; a: 1
 layout(binding = 6, rgba32f) uniform writeonly image2D half_difference;  // rgb: (E of half 0 - E of half 1) / 2
-layout(binding = 7) writeonly buffer Packed { uint packed_radiance[]; };
+layout(binding = 7) writeonly buffer Radiance { vec4 radiance[]; };      // as gather.glsl's
 layout(binding = 8) writeonly buffer Changes { vec2 changes[]; };        // largest change and sum of E, a workgroup
-layout(binding = 9) writeonly buffer Full { float full_radiance[]; };   // three each
 layout(push_constant) uniform Push { BounceConstants constants; };
 
 const float PI = 3.14159265358979;
@@ -30,7 +28,7 @@ vec4 received(uint me, uint half_of) {
   vec3 from_lamps;
   for (uint channel = 0u; channel < 3u; ++channel)
     from_lamps[channel] = float(direct[direct_at(me, half_of, channel)]) / constants.direct_scale;
-  return vec4(sum.rgb / constants.radiance_scale + from_lamps, sum.a);
+  return vec4(sum.rgb + from_lamps, sum.a);
 }
 
 vec3 irradiance(vec4 sum) { return sum.a > 0.0 ? PI * sum.rgb / sum.a : vec3(0.0); }
@@ -47,9 +45,7 @@ void main() {
     imageStore(total_irradiance, texel, vec4(e, 1.0));
     imageStore(half_difference, texel, vec4((irradiance(first) - irradiance(second)) / 2.0, 0.0));
     const vec3 own = me < constants.lamps ? vec3(0.0) : imageLoad(emission, texel).rgb;
-    const vec3 scaled = (own + imageLoad(albedo, texel).rgb / PI * e) * constants.radiance_scale;
-    packed_radiance[me] = pack_radiance(scaled);
-    for (uint k = 0u; k < 3u; ++k) full_radiance[3u * me + k] = scaled[k];
+    radiance[me] = vec4(own + imageLoad(albedo, texel).rgb / PI * e, 1.0);
     mine = vec2(max(change.r, max(change.g, change.b)), e.r + e.g + e.b);
   }
   partial[lane] = mine;

@@ -2,27 +2,15 @@
 // defines two_links().
 
 layout(local_size_x = TILE) in;
-layout(binding = 1) readonly buffer Radiance { uint radiance[]; };  // of each valid texel, then black
+layout(binding = 1) uniform samplerBuffer radiance;                 // what each link sees. rgb: L; a: 1; of UNKNOWN all 0
 layout(binding = 2) uniform samplerBuffer directions;               // xyz; w: solid angle [sr], of each pair
 layout(binding = 3) readonly buffer TexelOf { uint texel_of[]; };
 layout(binding = 4, rgba32f) uniform readonly image2D normal;
-layout(binding = 5) buffer Sums { vec4 sums[]; };  // of each part and texel. rgb: sum of w L [scaled]; a: of w [sr]
+layout(binding = 5) buffer Sums { vec4 sums[]; };  // of each part and texel. rgb: sum of w L; a: of w [sr]
 layout(push_constant) uniform Push { GatherConstants constants; };
 
-#include "packed_radiance.glsl"
-
-// Words of a texel: 1 packed, 3 as 32-bit floats.
-layout(constant_id = 0) const uint RADIANCE_WORDS = 1;
-
-vec3 radiance_of(uint texel) {
-  if (RADIANCE_WORDS == 1u) return unpack_radiance(radiance[texel]);
-  return uintBitsToFloat(uvec3(radiance[3u * texel], radiance[3u * texel + 1u], radiance[3u * texel + 2u]));
-}
-
-vec4 seen(uint link, float weight) {
-  if (link == UNKNOWN(constants.texels)) weight = 0.0;
-  return weight * vec4(radiance_of(min(link, constants.texels)), 1.0);
-}
+// L of what a link sees.
+vec4 seen(uint link) { return texelFetch(radiance, int(min(link, UNKNOWN(constants.texels)))); }
 
 void main() {
   const uint me = gl_GlobalInvocationID.x;
@@ -35,7 +23,7 @@ void main() {
     const int first = int(constants.first_pair + pair);
     const vec4 a = texelFetch(directions, first), b = texelFetch(directions, first + 1);
     const uvec2 links = two_links(pair, me, constants.pairs);
-    sum += seen(links.x, abs(dot(n, a.xyz)) * a.w) + seen(links.y, abs(dot(n, b.xyz)) * b.w);
+    sum += abs(dot(n, a.xyz)) * a.w * seen(links.x) + abs(dot(n, b.xyz)) * b.w * seen(links.y);
   }
   sums[mine] = sum;
 }

@@ -168,9 +168,8 @@ struct ReceiveConstants {
 
 struct BounceConstants {
   uint texels;
-  uint lamps;            // texels from the first on whose light the direct sums hold
-  float radiance_scale;  // what radiance is multiplied by before it is packed
-  float direct_scale;    // what w Le is multiplied by in direct sums
+  uint lamps;          // texels from the first on whose light the direct sums hold
+  float direct_scale;  // what w Le is multiplied by in direct sums
 };
 
 // What a solve counts, summed over PSFs.

@@ -19,8 +19,6 @@ const std::map<std::string, Method> methods = {
     {"thesis", Method::thesis}, {"links", Method::links}, {"reference", Method::reference}};
 const std::map<std::string, Sort> sorts = {
     {"bitonic", Sort::bitonic}, {"compare-swap", Sort::compare_swap}, {"scan", Sort::scan}};
-const std::map<std::string, lightfield::Radiance> radiances = {{"packed", lightfield::Radiance::packed},
-                                                               {"full", lightfield::Radiance::full}};
 const std::map<std::string, Weights> all_weights = {{"solid-angle", Weights::solid_angle},
                                                     {"equal", Weights::equal}};
 
@@ -153,7 +151,7 @@ std::optional<std::uint32_t> parse_bounces(const std::string& text) {
   return bounces;
 }
 
-void add_links_options(CLI::App& command, lightfield::Settings& settings) {
+void add_step_bounces_option(CLI::App& command, lightfield::Settings& settings) {
   command
       .add_option(
           "--step-bounces", settings.step_bounces,
@@ -161,10 +159,6 @@ void add_links_options(CLI::App& command, lightfield::Settings& settings) {
           "of the directions, in turn; what is missing follows with the next maps. Light straight from lamps "
           "is always there")
       ->capture_default_str();
-  add_choice(
-      command, "--radiance", settings.radiance, radiances,
-      "Of --method links: how the bounces of the map after a move read what texels send: in one word each "
-      "(RGB9E5), or in three, as all others do");
 }
 
 void add_bounces_option(CLI::App& command, lightfield::Settings& settings) {

@@ -53,8 +53,8 @@ PsfSize parse_psf_size(const std::string& text);
 // "auto" (nothing) or a number from 1. Throws UsageError for anything else.
 std::optional<std::uint32_t> parse_bounces(const std::string& text);
 
-// --step-bounces, --radiance: what --method links spends on a map while things move, and on a link.
-void add_links_options(CLI::App& command, lightfield::Settings& settings);
+// --step-bounces: what --method links spends on a map while things move.
+void add_step_bounces_option(CLI::App& command, lightfield::Settings& settings);
 
 // --bounces auto|N.
 void add_bounces_option(CLI::App& command, lightfield::Settings& settings);

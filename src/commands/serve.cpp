@@ -204,15 +204,14 @@ void add_serve(CLI::App& application) {
   add_bounces_option(*command, options->settings);
   add_method_option(*command, options->method, {Method::links, Method::thesis});
   add_light_field_options(*command, options->settings);
-  add_links_options(*command, options->settings);
+  add_step_bounces_option(*command, options->settings);
   add_device_options(*command, options->device);
   command->callback([options, command] {
     choose_method(*command, options->method);
-    for (const char* option : {"--step-bounces", "--radiance"})
-      if (command->count(option) > 0 && (options->method != Method::links || options->settings.bounces))
-        throw UsageError(
-            std::string(option) +
-            " is for --method links with --bounces auto, whose light goes on where it was; leave it out");
+    if (command->count("--step-bounces") > 0 && (options->method != Method::links || options->settings.bounces))
+      throw UsageError(
+          "--step-bounces is for --method links with --bounces auto, whose light goes on where it was; leave "
+          "it out");
     if (options->method == Method::links && (command->count("--abuffer") > 0 || command->count("--sort") > 0))
       throw UsageError("--abuffer and --sort mean nothing to --method links; leave them out");
     options->chosen_quality =

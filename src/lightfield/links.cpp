@@ -17,21 +17,11 @@ namespace {
 // Bounces without progress after which the bound is as low as it gets.
 constexpr std::uint32_t patience = 8;
 
-// Radiance is packed into numbers up to 65408. Its highest is bounded by Le / (1 - albedo), but a bound that
-// takes more than this many times Le is hardly reached by any scene, and would cost the dark ones their digits.
-constexpr float most_gain = 1e4f;
-constexpr float packing_limit = 60000;
-
 float highest_albedo(const gpu::Device& device, const LightMap& map) {
   float highest = 0;
   for (const auto& a : gpu::download<glm::vec4>(device, map.albedo))
     highest = std::max({highest, a.r, a.g, a.b});
   return highest;
-}
-
-float radiance_scale(float emission, float albedo) {
-  const float gain = albedo < 1 ? std::min(1 / (1 - albedo), most_gain) : most_gain;
-  return emission > 0 ? packing_limit / (emission * gain) : 1;
 }
 
 }  // namespace
@@ -44,7 +34,7 @@ struct Links::Parts {
         brdf(device),
         tone_map(device),
         albedo(highest_albedo(device, links.map())),
-        gather(device, links.table(), radiance_scale(links.table().brightest, albedo)) {}
+        gather(device, links.table()) {}
 
   const gpu::Device& device;
   const Settings settings;
@@ -61,7 +51,7 @@ struct Links::Parts {
 
   void link(const std::vector<glm::vec3>& to);
   void start();
-  void bounce(Radiance radiance);
+  void bounce();
   void part_bounce();
   void converge(const std::function<bool(std::uint32_t)>& enough);
   void present();
@@ -128,9 +118,9 @@ void Links::Parts::start() {
   lit = true;
 }
 
-void Links::Parts::bounce(Radiance radiance) {
+void Links::Parts::bounce() {
   gpu::Frame frame(device, times);
-  gather.bounce(frame, links, radiance);
+  gather.bounce(frame, links);
   frame.submit_and_wait();
   ++solution.bounces;
   const auto change = gather.change(links.table());
@@ -142,7 +132,7 @@ void Links::Parts::bounce(Radiance radiance) {
 void Links::Parts::part_bounce() {
   const auto parts = static_cast<std::uint32_t>(settings.step_bounces * shaders::PARTS);
   gpu::Frame frame(device, times);
-  gather.bounce(frame, links, settings.radiance, next_part, parts);
+  gather.bounce(frame, links, next_part, parts);
   frame.submit_and_wait();
   next_part = (next_part + parts) % shaders::PARTS;
   solution.residual = std::numeric_limits<double>::infinity();
@@ -154,7 +144,7 @@ void Links::Parts::converge(const std::function<bool(std::uint32_t)>& enough) {
   if (settings.bounces) {
     links.sum_direct();
     start();
-    while (solution.bounces < *settings.bounces) bounce(Radiance::full);
+    while (solution.bounces < *settings.bounces) bounce();
     solution.settled = true;
     return;
   }
@@ -162,19 +152,17 @@ void Links::Parts::converge(const std::function<bool(std::uint32_t)>& enough) {
   if (!lit) start();
   const auto asked = step ? static_cast<std::uint32_t>(settings.step_bounces) : 0;
   if (step && settings.step_bounces < 1) part_bounce();
-  // Packed radiance flickers in its last digits: light does not settle by it.
-  if (settings.radiance == Radiance::packed)
-    while (solution.bounces < asked) bounce(Radiance::packed);
+  while (solution.bounces < asked) bounce();
   if (solution.bounces > 0 && enough(solution.bounces)) return;
   links.sum_direct();
   double least = std::numeric_limits<double>::infinity();
   std::uint32_t since = 0;
   do {
-    bounce(Radiance::full);
+    bounce();
     since = solution.residual < least ? 0 : since + 1;
     least = std::min(least, solution.residual);
     solution.settled = solution.residual < converged || since == patience || solution.bounces == most_bounces;
-  } while (!solution.settled && (solution.bounces < asked || !enough(solution.bounces)));
+  } while (!solution.settled && !enough(solution.bounces));
 }
 
 void Links::Parts::present() {

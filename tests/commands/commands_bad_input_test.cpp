@@ -64,11 +64,6 @@ INSTANTIATE_TEST_SUITE_P(
                    " --signaling ws://127.0.0.1:1/server --token-file nowhere",
                2,
                {"--step-bounces", "links", "leave it out"}},
-        BadUse{"Radiance",
-               "serve --radiance thick --scene " + cornell +
-                   " --signaling ws://127.0.0.1:1/server --token-file nowhere",
-               2,
-               {"thick", "full|packed"}},
         BadUse{"ServeReference",
                "serve --method reference --scene " + cornell +
                    " --signaling ws://127.0.0.1:1/server --token-file nowhere",

@@ -227,27 +227,6 @@ TEST_F(Moves, PartBouncesFollowAndArrive) {
   EXPECT_GT(missing[1.0f], missing[2.0f]);
 }
 
-// The map of a step by packed radiance and by full; once light has settled both are the same.
-TEST_F(Moves, PackedRadianceIsNearlyFull) {
-  auto offsets = at_rest(scene_);
-  const auto walk = [&](Radiance radiance) {
-    auto settings = settings_;
-    settings.radiance = radiance;
-    Links links(device(), scene_, settings);
-    links.solve(at_rest(scene_));
-    links.update(offsets, [](std::uint32_t) { return true; });
-    const auto moving = links.irradiance();
-    links.solve(offsets);
-    return std::pair(moving, links.irradiance());
-  };
-  offsets[1].x -= 0.3f;
-  const auto [packed, packed_settled] = walk(Radiance::packed);
-  const auto [full, full_settled] = walk(Radiance::full);
-  EXPECT_LT(rel_rmse(packed, full), 1e-3);
-  EXPECT_GT(rel_rmse(packed, full), 0) << "is the option taken?";
-  EXPECT_LT(rel_rmse(packed_settled, full_settled), 1e-3);
-}
-
 // A body that leaves the room makes the scene's sphere, and so all rasters, larger.
 TEST_F(Moves, AMoveThatWidensTheSceneIsLinkedAfresh) {
   Links links(device(), scene_, settings_);

@@ -10,9 +10,6 @@ enum class ABuffer { stencil, list };
 enum class Sort { bitonic, compare_swap, scan };  // as SORT_* in shaders/include/shared.h
 // A direction's share: its solid angle (the thesis' correction factor), or the same for all.
 enum class Weights { solid_angle, equal };
-// links: of a texel, as a bounce after a move reads it: a word (RGB9E5), or three of 32-bit float. Other
-// bounces read the latter.
-enum class Radiance { packed, full };
 
 // What the A-buffer can hold: the stencil counts a pixel's layers in 8 bits.
 constexpr std::uint32_t most_layers = 128;
@@ -30,7 +27,6 @@ struct Settings {
   // links: bounces of the map after a move, 1.., or 0.5 or 0.25: over half or a quarter of the directions, in
   // turn. Light straight from lamps is always of all.
   float step_bounces = 0.25f;
-  Radiance radiance = Radiance::packed;
   std::uint64_t seed = 0;  // of the directions' rotations and rasters: the same seed gives the same light map
 
   std::uint32_t raster() const { return psf_size > 0 ? psf_size : size; }  // of a PSF [pixels a side]
