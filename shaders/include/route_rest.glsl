@@ -8,6 +8,24 @@ layout(binding = 8) uniform samplerBuffer walls;
 #include "receiver.glsl"
 #include "relink.glsl"
 
+// The 2 x 2 pixels around a texel, the nearest first, without those that any wall stands before; then without those that a
+// rising one does.
+const uint CHOICES = 8u;
+
+ivec2 pixel_of(uint choice, Sight sight) {
+  return clamp(sight.nearest + beside_nearest(choice % 4u, sight.within), ivec2(0), ivec2(constants.size) - 1);
+}
+
+// The first choice from `choice` on that no wall hides.
+uint next_open(uint choice, Receiver receiver, Sight sight, Region region, Blur blur) {
+  const vec3 face = receiver.face_and_triangle.xyz;
+  while (choice < CHOICES &&
+         wall_between(receiver.near, uint(receiver.face_and_triangle.a), receiver.place.xyz,
+                      away_to(shift_to(pixel_of(choice, sight), sight), sight, region), face, blur, choice >= 4u))
+    ++choice;
+  return choice;
+}
+
 void route(uint me, Region region, bool wall_at_nearest) {
   const Receiver receiver = receiver_at(receivers, me);
   const vec3 face = receiver.face_and_triangle.xyz;
@@ -18,20 +36,18 @@ void route(uint me, Region region, bool wall_at_nearest) {
   const Blur blur = blur_of(pixel_width, sight.scale, sight.travel, sight.face_cosine);
   int link = -1;
   bool known = false;
-  // As in stencil_routing: of the 2 x 2 pixels the nearest that tells what the texel sees.
-  for (uint choice = wall_at_nearest ? 1u : 0u; choice < 8u; ++choice) {
-    const ivec2 pixel =
-        clamp(sight.nearest + beside_nearest(choice % 4u, sight.within), ivec2(0), ivec2(constants.size) - 1);
+  // As in stencil_routing: the first that tells what the texel sees. Walls in a loop of their own, so that what follows is
+  // done once for nearly all, and not once for each choice that some lane is at.
+  for (uint choice = next_open(wall_at_nearest ? 1u : 0u, receiver, sight, region, blur); choice < CHOICES;
+       choice = next_open(choice + 1u, receiver, sight, region, blur)) {
+    const ivec2 pixel = pixel_of(choice, sight);
     const vec2 shift = shift_to(pixel, sight);
-    const vec3 away = away_to(shift, sight, region);
-    if (wall_between(receiver.near, uint(receiver.face_and_triangle.a), place.xyz, away, face, blur, choice >= 4u))
-      continue;
     known = true;
     const float limit = receiver_depth(shift, sight.depth, sight.slope) + tolerance;
     link = nearest_in_front(pixel, region, sight.sign, limit, true);
     if (link >= 0) break;
     const uint texel = uint(place.w), width = uint(imageSize(position).x);
-    if (chart_reaches(ivec2(texel % width, texel / width), place.xyz, away)) break;
+    if (chart_reaches(ivec2(texel % width, texel / width), place.xyz, away_to(shift, sight, region))) break;
   }
   relink(me, receiver.normal_and_wall.xyz, region,
          link >= 0 ? uint(link) : known ? MISS(constants.texels) : UNKNOWN(constants.texels));
