@@ -1,5 +1,7 @@
 #include "lichtveld/gpu/frame.hpp"
 
+#include <utility>
+
 #include "bindings.hpp"
 
 namespace lichtveld::gpu {
@@ -27,6 +29,15 @@ Frame::Frame(const Device& device, PassTimes& times) : device_(device), times_(t
                                                                    .commandBufferCount = 1})
                             .front());
   commands_.begin({.flags = vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
+}
+
+Frame::~Frame() {
+  if (!*submitted_) return;
+  try {
+    wait();
+  } catch (const std::exception&) {
+    // The device is lost: nothing is under way any more, and whoever uses it next is told.
+  }
 }
 
 void Frame::pass(const std::string& name, const std::function<void()>& record) {
@@ -141,12 +152,17 @@ void Frame::to_host(const Buffer& buffer) {
   use(buffer, {Stage::eHost, AccessBit::eHostRead});
 }
 
-void Frame::submit_and_wait() {
+void Frame::submit() {
   flush_barriers();
   commands_.end();
-  const vk::raii::Fence fence(device_.handle(), vk::FenceCreateInfo{});
+  vk::raii::Fence fence(device_.handle(), vk::FenceCreateInfo{});
   const vk::CommandBufferSubmitInfo submit{.commandBuffer = *commands_};
   device_.queue().submit2(vk::SubmitInfo2{.commandBufferInfoCount = 1, .pCommandBufferInfos = &submit}, *fence);
+  submitted_ = std::move(fence);
+}
+
+void Frame::wait() {
+  const auto fence = std::exchange(submitted_, nullptr);
   if (device_.handle().waitForFences(*fence, true, UINT64_MAX) != vk::Result::eSuccess)
     throw std::runtime_error("the device did not finish a frame");
   std::vector<std::uint64_t> ticks;

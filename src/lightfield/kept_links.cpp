@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <numeric>
 #include <utility>
 
 namespace lichtveld::lightfield {
@@ -59,8 +58,8 @@ KeptLinks::KeptLinks(const gpu::Device& device, const scene::Scene& scene, const
                 vk::BufferUsageFlagBits::eStorageBuffer, gpu::Memory::host),
       directions_(upload_directions(device, pairs_)),
       capacity_(capacity_for(settings.layers)) {
-  place(std::vector(scene.bodies.size(), glm::vec3(0)));
   gpu::Frame frame(device, times);
+  place(frame, std::vector(scene.bodies.size(), glm::vec3(0)));
   geometry_texture_.find_sources(frame, map_);
   frame.submit_and_wait();
   table_ = std::make_unique<LinkTable>(device, scene, map_, static_cast<std::uint32_t>(pairs_.size()));
@@ -68,38 +67,38 @@ KeptLinks::KeptLinks(const gpu::Device& device, const scene::Scene& scene, const
   layered();
 }
 
-void KeptLinks::place(const std::vector<glm::vec3>& to) {
+void KeptLinks::place(gpu::Frame& frame, const std::vector<glm::vec3>& to) {
   geometry_.place(to, settings_.raster());
-  gpu::Frame frame(device_, times_);
   if (offsets_.empty()) frame.clear("route_links", map_.cover, {});
   geometry_texture_.record(frame, geometry_, map_);
-  frame.submit_and_wait();
   if (layered_) layered_->placed = false;
 }
 
 void KeptLinks::link(const std::vector<glm::vec3>& to, Solution& solution) {
   if (to == offsets_) return;
   const auto sphere_before = geometry_.sphere;
-  place(to);
+  gpu::Frame placing(device_, times_);
+  place(placing, to);
+  placing.submit();  // while it is drawn, the host looks up what to route
   // All views are scaled by the scene's sphere; if that changes, so does every raster.
   const bool all = offsets_.empty() || !same(geometry_.sphere, sphere_before);
   const auto before = std::exchange(offsets_, {});  // should this fail half-way, nothing is known
   summed_ = before.empty();                         // the first links of all sum it up
   const auto tiles = table_->boxes(to);
-  std::vector<std::uint32_t> groups(table_->groups());
   if (all) {
-    std::iota(groups.begin(), groups.end(), 0u);
+    for (std::uint32_t group = 0; group < table_->groups(); ++group) cover_unknown_.insert(group);
     solution.rays = std::uint64_t{table_->texels} * pairs_.size();
     solution.misses = solution.rays_unknown = solution.overflow_pixels = 0;
     solution.texels_valid = table_->texels;
     route(whole_rasters(), tiles, solution);
   } else {
-    groups = groups_beside(moved_boxes(before, to), contact(geometry_.sphere, settings_.raster()), tiles);
+    cover_unknown_.merge(
+        groups_beside(moved_boxes(before, to), contact(geometry_.sphere, settings_.raster()), tiles));
     // One after the other: where their ways cross, the same links change for each.
     for (std::size_t body = 1; body < to.size(); ++body)
       if (to[body] != before[body]) route(changed_parts(body, before[body], to[body]), tiles, solution);
   }
-  find_cover(groups);
+  placing.wait();
   checked_ = 0;
   offsets_ = to;
 }
@@ -229,10 +228,12 @@ LinkCheck KeptLinks::check_two() {
           .rays_unknown = counted.unknown};
 }
 
-void KeptLinks::find_cover(const std::vector<std::uint32_t>& groups) {
-  gpu::Frame frame(device_, times_);
-  layered().route.find_cover(frame, geometry_, map_, *table_, directions_, settings_.raster(), groups);
-  frame.submit_and_wait();
+void KeptLinks::find_shown(gpu::Frame& frame) {
+  if (!cover_unknown_.empty())
+    layered().route.find_cover(frame, geometry_, map_, *table_, directions_, settings_.raster(),
+                               {cover_unknown_.begin(), cover_unknown_.end()});
+  cover_unknown_.clear();
+  geometry_texture_.find_shown(frame, map_);
 }
 
 }  // namespace lichtveld::lightfield

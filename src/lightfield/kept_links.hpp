@@ -5,6 +5,7 @@
 
 #include <memory>
 #include <optional>
+#include <set>
 #include <vector>
 
 #include "geometry_texture.hpp"
@@ -28,8 +29,8 @@ class KeptLinks {
   void sum_direct();
   // As Links::check.
   LinkCheck check(std::uint32_t pairs);
-  // Writes map().shown.
-  void find_shown(gpu::Frame& frame) const { geometry_texture_.find_shown(frame, map_); }
+  // Writes map().shown: what lies open to the light where the bodies are.
+  void find_shown(gpu::Frame& frame);
 
   const LightMap& map() const { return map_; }
   const LinkTable& table() const { return *table_; }
@@ -46,7 +47,7 @@ class KeptLinks {
     bool placed = false;  // the texels, where they are now
   };
 
-  void place(const std::vector<glm::vec3>& to);
+  void place(gpu::Frame& frame, const std::vector<glm::vec3>& to);
   Part whole_raster(std::uint32_t pair) const;
   std::vector<Part> whole_rasters() const;
   std::vector<Part> changed_parts(std::size_t body, const glm::vec3& from, const glm::vec3& to) const;
@@ -54,7 +55,6 @@ class KeptLinks {
                                       const std::vector<glm::vec3>& to) const;
   void route(const std::vector<Part>& parts, const TileBoxes& tiles, Solution& solution);
   Layered& layered();
-  void find_cover(const std::vector<std::uint32_t>& groups);
   LinkCheck check_two();
 
   const gpu::Device& device_;
@@ -73,6 +73,8 @@ class KeptLinks {
   std::unique_ptr<Layered> layered_;
   std::optional<LinkTable::Chunk> again_;  // links of two pairs, to compare
   std::vector<glm::vec3> offsets_;
+  std::set<std::uint32_t>
+      cover_unknown_;          // groups of texels that may be covered otherwise than map_.cover says
   std::uint32_t checked_ = 0;  // pairs, since the last move
 };
 

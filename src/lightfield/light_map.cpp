@@ -24,12 +24,6 @@ gpu::Image atlas_image(const gpu::Device& device, const char* name, std::uint32_
 // draws out along the texel's plane; what lies beyond 8 has a cosine under 0.13 and 2 % of the light.
 constexpr float wall_reach = 8;
 
-template <typename T>
-gpu::Buffer upload_storage(const gpu::Device& device, const char* name, const std::vector<T>& contents,
-                           vk::Format texels = vk::Format::eUndefined) {
-  return gpu::upload<T>(device, name, contents, vk::BufferUsageFlagBits::eStorageBuffer, texels);
-}
-
 constexpr auto rgba32f = vk::Format::eR32G32B32A32Sfloat;
 
 std::vector<gpu::Image> upload_textures(const gpu::Device& device, const scene::Scene& scene) {
@@ -87,9 +81,10 @@ Geometry::Geometry(const gpu::Device& device, const scene::Scene& scene)
                                          vk::BufferUsageFlagBits::eIndexBuffer)),
       offsets(device, "scene/offsets", scene.bodies.size() * sizeof(glm::vec4),
               vk::BufferUsageFlagBits::eStorageBuffer, gpu::Memory::host),
-      walls_first(device, "scene/walls_first", sizeof(std::uint32_t), vk::BufferUsageFlagBits::eStorageBuffer),
+      walls_first(device, "scene/walls_first", sizeof(std::uint32_t), vk::BufferUsageFlagBits::eStorageBuffer,
+                  gpu::Memory::host),
       walls(device, "scene/walls", sizeof(glm::vec4), vk::BufferUsageFlagBits::eStorageBuffer,
-            gpu::Memory::device, rgba32f),
+            gpu::Memory::host, rgba32f),
       textures(upload_textures(device, scene)),
       sampler(device.handle(), vk::SamplerCreateInfo{.magFilter = vk::Filter::eLinear,
                                                      .minFilter = vk::Filter::eLinear,
@@ -109,8 +104,8 @@ void Geometry::place(const std::vector<glm::vec3>& to, std::uint32_t pixels) {
     ends.emplace_back(line.a, line.rises ? 1 : 0);
     ends.emplace_back(line.b, 0);
   }
-  walls_first = upload_storage<std::uint32_t>(device_, "scene/walls_first", found.first);
-  walls = upload_storage<glm::vec4>(device_, "scene/walls", ends, rgba32f);
+  gpu::put<std::uint32_t>(device_, walls_first, found.first);
+  gpu::put<glm::vec4>(device_, walls, ends);
   const auto places = offsets.as<glm::vec4>();
   for (std::size_t body = 0; body < shifts.size(); ++body) places[body] = glm::vec4(shifts[body], 0);
 }

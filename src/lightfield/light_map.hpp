@@ -52,7 +52,7 @@ struct Geometry {
   std::vector<glm::vec3> shifts;  // of the bodies from rest [m]
   scene::Sphere sphere;           // around all of them at their places
   gpu::Buffer vertices, indices;
-  gpu::Buffer offsets;  // vec4 a body, host-visible
+  gpu::Buffer offsets;  // vec4 a body, host-visible as the next two
   gpu::Buffer walls_first,
       walls;  // scene::Walls: of each triangle; two vec4 a line, the first's w: 1 if it rises
   std::vector<gpu::Image> textures;  // of Scene::textures, and a white one at the end

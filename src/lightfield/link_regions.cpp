@@ -147,9 +147,8 @@ std::vector<RegionBatch> pack(const std::vector<Part>& parts, const StoreExtent&
   return batches;
 }
 
-std::vector<std::uint32_t> groups_beside(const std::vector<scene::Box>& boxes, float gap,
-                                         const TileBoxes& tiles) {
-  std::vector<std::uint32_t> found;
+std::set<std::uint32_t> groups_beside(const std::vector<scene::Box>& boxes, float gap, const TileBoxes& tiles) {
+  std::set<std::uint32_t> found;
   for (std::uint32_t group = 0; group < tiles.groups.size(); ++group) {
     const auto& [centre, half] = tiles.groups[group].around;
     const glm::vec3 low = centre - half, high = centre + half;
@@ -157,7 +156,7 @@ std::vector<std::uint32_t> groups_beside(const std::vector<scene::Box>& boxes, f
           return glm::all(glm::lessThanEqual(box.min - gap, high)) &&
                  glm::all(glm::lessThanEqual(low, box.max + gap));
         }))
-      found.push_back(group);
+      found.insert(group);
   }
   return found;
 }

@@ -2,6 +2,7 @@
 // of texels that look into them.
 #pragma once
 
+#include <set>
 #include <vector>
 
 #include "emit_radiance.hpp"
@@ -47,7 +48,6 @@ struct RegionBatch {
 std::vector<RegionBatch> pack(const std::vector<Part>& parts, const StoreExtent& store, const TileBoxes& tiles);
 
 // The groups of tiles that meet any of these boxes, or come within `gap` of it [m].
-std::vector<std::uint32_t> groups_beside(const std::vector<scene::Box>& boxes, float gap,
-                                         const TileBoxes& tiles);
+std::set<std::uint32_t> groups_beside(const std::vector<scene::Box>& boxes, float gap, const TileBoxes& tiles);
 
 }  // namespace lichtveld::lightfield

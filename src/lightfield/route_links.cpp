@@ -1,7 +1,6 @@
 #include "route_links.hpp"
 
 #include <algorithm>
-#include <cstring>
 
 #include "draw_scene.hpp"
 #include "shaders/emit_links.frag.h"
@@ -45,16 +44,6 @@ StoreExtent store_extent(const gpu::Device& device, std::uint32_t pixels, std::u
   const auto rasters = static_cast<std::uint32_t>(std::max<std::uint64_t>(1, usual_store / a_raster));
   const std::uint32_t columns = std::clamp(widest_store / pixels, 1u, rasters);
   return {columns * pixels, std::max(1u, rasters / columns) * pixels};
-}
-
-template <typename T>
-void put(const gpu::Device& device, gpu::Buffer& buffer, const std::vector<T>& contents) {
-  if (contents.empty()) return;
-  const auto bytes = contents.size() * sizeof(T);
-  if (bytes > buffer.size())
-    buffer = gpu::Buffer(device, buffer.name(), 2 * bytes, vk::BufferUsageFlagBits::eStorageBuffer,
-                         gpu::Memory::host, buffer.texel_format());
-  std::memcpy(buffer.bytes().data(), contents.data(), bytes);
 }
 
 // Of route_links, route_doubts and route_rest, each of which leaves out what it does not use.
@@ -150,8 +139,7 @@ void RouteLinks::read_receivers(gpu::Frame& frame, const LightMap& map, const Li
 void RouteLinks::find_cover(gpu::Frame& frame, const Geometry& geometry, const LightMap& map,
                             const LinkTable& table, const gpu::Buffer& directions, std::uint32_t pixels,
                             const std::vector<std::uint32_t>& groups) {
-  if (groups.empty()) return;
-  put(device_, groups_, groups);
+  gpu::put<std::uint32_t>(device_, groups_, groups);
   const auto& chunk = table.chunks.front();
   frame.compute(cover_,
                 {gpu::reads(chunk.links), gpu::fetches(directions), gpu::fetches(receivers_),
@@ -180,9 +168,9 @@ void RouteLinks::record(gpu::Frame& frame, const RegionBatch& batch, const Geome
                         const LightMap& map, const LinkTable& table, const Destination& to,
                         const LinkStore& store, std::uint32_t pixels, std::uint32_t limit,
                         const gpu::Buffer& counters) {
-  put(device_, regions_, batch.regions);
-  put(device_, jobs_, batch.jobs);
-  put(device_, tiles_, batch.tiles);
+  gpu::put<shaders::Region>(device_, regions_, batch.regions);
+  gpu::put<shaders::RouteJob>(device_, jobs_, batch.jobs);
+  gpu::put<std::uint32_t>(device_, tiles_, batch.tiles);
   const auto bytes = batch.tiles.size() * table.tile * sizeof(glm::uvec2);
   for (auto* list : {&doubts_, &rest_})
     if (bytes > list->size())

@@ -89,6 +89,9 @@ class Frame {
  public:
   // Starts recording. Times of its passes are added to `times` when it is submitted.
   Frame(const Device& device, PassTimes& times);
+  ~Frame();
+  Frame(const Frame&) = delete;
+  Frame& operator=(const Frame&) = delete;
 
   // A compute pass: bindings in the order of the pipeline's kinds, workgroups in x and y.
   template <typename Constants>
@@ -115,8 +118,15 @@ class Frame {
   // Makes what the frame wrote to a host buffer visible to the host.
   void to_host(const Buffer& buffer);
 
-  // Submits and waits until all is done; reads the timestamps. The frame is then spent.
-  void submit_and_wait();
+  // Submits: the device works while the host goes on. What the frame uses must outlive the wait for it, which
+  // the destructor makes up for.
+  void submit();
+  // Waits until all is done; reads the timestamps. The frame is then spent.
+  void wait();
+  void submit_and_wait() {
+    submit();
+    wait();
+  }
 
  private:
   struct Access {
@@ -141,6 +151,7 @@ class Frame {
   const Device& device_;
   PassTimes& times_;
   vk::raii::CommandBuffer commands_ = nullptr;
+  vk::raii::Fence submitted_ = nullptr;  // until it has been waited for
   std::vector<vk::raii::QueryPool> queries_;
   std::vector<Timed> timed_;
   std::vector<vk::ImageMemoryBarrier2> image_barriers_;

@@ -1,4 +1,4 @@
-// Whole buffers and images between host and device, each as a frame of its own.
+// Whole buffers and images between host and device; what no host buffer holds as a frame of its own.
 #pragma once
 
 #include <algorithm>
@@ -22,6 +22,15 @@ Buffer upload(const Device& device, const std::string& name, std::span<const T> 
   frame.copy("upload " + name, staging, buffer);
   frame.submit_and_wait();
   return buffer;
+}
+
+// Fills a host buffer from its beginning; one that is too small is replaced by one with room to spare.
+template <typename T>
+void put(const Device& device, Buffer& buffer, std::span<const T> contents) {
+  if (contents.size_bytes() > buffer.size())
+    buffer = Buffer(device, buffer.name(), 2 * contents.size_bytes(), vk::BufferUsageFlagBits::eStorageBuffer,
+                    Memory::host, buffer.texel_format());
+  std::ranges::copy(std::as_bytes(contents), buffer.bytes().begin());
 }
 
 // A sampled 8-bit sRGB image with these pixels.
