@@ -38,8 +38,9 @@ void route(uint me, Region region, bool wall_at_nearest) {
   bool known = false;
   // As in stencil_routing: the first that tells what the texel sees. Walls in a loop of their own, so that what follows is
   // done once for nearly all, and not once for each choice that some lane is at.
-  for (uint choice = next_open(wall_at_nearest ? 1u : 0u, receiver, sight, region, blur); choice < CHOICES;
-       choice = next_open(choice + 1u, receiver, sight, region, blur)) {
+  for (uint choice = wall_at_nearest ? 1u : 0u; choice < CHOICES; ++choice) {
+    choice = next_open(choice, receiver, sight, region, blur);
+    if (choice == CHOICES) break;
     const ivec2 pixel = pixel_of(choice, sight);
     const vec2 shift = shift_to(pixel, sight);
     known = true;
