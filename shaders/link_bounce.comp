@@ -14,11 +14,10 @@ layout(binding = 4, rgba32f) uniform readonly image2D emission;
 layout(binding = 5, rgba32f) uniform image2D total_irradiance;           // rgb: E [W m^-2]; a: 1
 layout(binding = 6, rgba32f) uniform writeonly image2D half_difference;  // rgb: (E of half 0 - E of half 1) / 2
 layout(binding = 7) writeonly buffer Radiance { vec4 radiance[]; };      // as gather.glsl's
-layout(binding = 8) writeonly buffer Changes { vec2 changes[]; };        // largest change and sum of E, a workgroup
+layout(binding = 8) writeonly buffer Changes { vec2 changes[]; };        // of each texel: the largest channel's change, and the sum of E
 layout(push_constant) uniform Push { BounceConstants constants; };
 
 const float PI = 3.14159265358979;
-shared vec2 partial[TILE];
 
 // From half of the directions. rgb: sum of w L, lamps with it; a: of w.
 vec4 received(uint me, uint half_of) {
@@ -34,27 +33,16 @@ vec4 received(uint me, uint half_of) {
 vec3 irradiance(vec4 sum) { return sum.a > 0.0 ? PI * sum.rgb / sum.a : vec3(0.0); }
 
 void main() {
-  const uint me = gl_GlobalInvocationID.x, lane = gl_LocalInvocationID.x;
-  vec2 mine = vec2(0.0);
-  if (me < constants.texels) {
-    const uint width = uint(imageSize(albedo).x);
-    const ivec2 texel = ivec2(texel_of[me] % width, texel_of[me] / width);
-    const vec3 before = imageLoad(total_irradiance, texel).rgb;
-    const vec4 first = received(me, 0u), second = received(me, 1u);
-    const vec3 e = irradiance(first + second), change = abs(e - before);
-    imageStore(total_irradiance, texel, vec4(e, 1.0));
-    imageStore(half_difference, texel, vec4((irradiance(first) - irradiance(second)) / 2.0, 0.0));
-    const vec3 own = me < constants.lamps ? vec3(0.0) : imageLoad(emission, texel).rgb;
-    radiance[me] = vec4(own + imageLoad(albedo, texel).rgb / PI * e, 1.0);
-    mine = vec2(max(change.r, max(change.g, change.b)), e.r + e.g + e.b);
-  }
-  partial[lane] = mine;
-  for (uint width = TILE / 2u; width > 0u; width /= 2u) {
-    barrier();
-    if (lane < width) {
-      const vec2 other = partial[lane + width];
-      partial[lane] = vec2(max(partial[lane].x, other.x), partial[lane].y + other.y);
-    }
-  }
-  if (lane == 0u) changes[gl_WorkGroupID.x] = partial[0];
+  const uint me = gl_GlobalInvocationID.x;
+  if (me >= constants.texels) return;
+  const uint width = uint(imageSize(albedo).x);
+  const ivec2 texel = ivec2(texel_of[me] % width, texel_of[me] / width);
+  const vec3 before = imageLoad(total_irradiance, texel).rgb;
+  const vec4 first = received(me, 0u), second = received(me, 1u);
+  const vec3 e = irradiance(first + second), change = abs(e - before);
+  imageStore(total_irradiance, texel, vec4(e, 1.0));
+  imageStore(half_difference, texel, vec4((irradiance(first) - irradiance(second)) / 2.0, 0.0));
+  const vec3 own = me < constants.lamps ? vec3(0.0) : imageLoad(emission, texel).rgb;
+  radiance[me] = vec4(own + imageLoad(albedo, texel).rgb / PI * e, 1.0);
+  if (constants.counted != 0u) changes[me] = vec2(max(change.r, max(change.g, change.b)), e.r + e.g + e.b);
 }

@@ -170,6 +170,11 @@ struct BounceConstants {
   uint texels;
   uint lamps;          // texels from the first on whose light the direct sums hold
   float direct_scale;  // what w Le is multiplied by in direct sums
+  uint counted;        // 1: what has changed is asked for
+};
+
+struct ChangeConstants {
+  uint texels;
 };
 
 // What a solve counts, summed over PSFs.

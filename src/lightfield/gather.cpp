@@ -5,6 +5,7 @@
 #include "shaders/gather_16.comp.h"
 #include "shaders/gather_32.comp.h"
 #include "shaders/link_bounce.comp.h"
+#include "shaders/link_change.comp.h"
 
 namespace lichtveld::lightfield {
 
@@ -12,6 +13,8 @@ namespace {
 
 using gpu::Kind;
 
+// Workgroups that go through all texels for what a bounce has changed.
+constexpr std::uint32_t change_groups = 64;
 // Of vectors that shaders fetch at once.
 constexpr auto vectors = vk::Format::eR32G32B32A32Sfloat;
 
@@ -41,20 +44,29 @@ Gather::Gather(const gpu::Device& device, const LinkTable& table)
                       Kind::storage_image, Kind::storage_image, Kind::storage_image, Kind::storage_buffer,
                       Kind::storage_buffer},
             .push_bytes = sizeof(shaders::BounceConstants)}),
+      change_(device, "gather", link_change_comp,
+              {.kinds = std::vector(2, Kind::storage_buffer), .push_bytes = sizeof(shaders::ChangeConstants)}),
       radiance_(dark(device, table)),
       sums_(storage(device, "lightfield/sums", shaders::PARTS * std::uint64_t{table.texels} * sizeof(glm::vec4),
                     gpu::Memory::device, vectors)),
-      changes_(storage(device, "lightfield/changes", table.groups() * sizeof(glm::vec2), gpu::Memory::host)) {}
+      changed_(storage(device, "lightfield/changed", table.texels * sizeof(glm::vec2))),
+      changes_(storage(device, "lightfield/changes", change_groups * sizeof(glm::vec2), gpu::Memory::host)) {}
 
 void Gather::start(gpu::Frame& frame, const KeptLinks& links) const {
   frame.clear("gather", links.map().total_irradiance, {});
   frame.clear("gather", sums_);
-  end(frame, links);
+  end(frame, links, false);
 }
 
-void Gather::bounce(gpu::Frame& frame, const KeptLinks& links, std::uint32_t first, std::uint32_t parts) const {
+void Gather::bounce(gpu::Frame& frame, const KeptLinks& links) const {
+  for (std::uint32_t part = 0; part < shaders::PARTS; ++part) gather(frame, links, part);
+  end(frame, links, true);
+}
+
+void Gather::part_bounce(gpu::Frame& frame, const KeptLinks& links, std::uint32_t first,
+                         std::uint32_t parts) const {
   for (std::uint32_t part = first; part < first + parts; ++part) gather(frame, links, part % shaders::PARTS);
-  end(frame, links);
+  end(frame, links, false);
 }
 
 void Gather::gather(gpu::Frame& frame, const KeptLinks& links, std::uint32_t part) const {
@@ -82,17 +94,22 @@ void Gather::gather(gpu::Frame& frame, const KeptLinks& links, std::uint32_t par
   }
 }
 
-void Gather::end(gpu::Frame& frame, const KeptLinks& links) const {
+void Gather::end(gpu::Frame& frame, const KeptLinks& links, bool counted) const {
   const auto& map = links.map();
   const auto& table = links.table();
   const auto& direct = links.direct();
   frame.compute(end_,
                 {gpu::fetches(sums_), gpu::reads(direct.sums()), gpu::reads(table.texel_of),
                  gpu::reads(map.albedo), gpu::reads(map.emission), gpu::writes(map.total_irradiance),
-                 gpu::writes(map.half_difference), gpu::writes(radiance_), gpu::writes(changes_)},
-                shaders::BounceConstants{
-                    .texels = table.texels, .lamps = table.lamp_count(), .direct_scale = direct.scale()},
+                 gpu::writes(map.half_difference), gpu::writes(radiance_), gpu::writes(changed_)},
+                shaders::BounceConstants{.texels = table.texels,
+                                         .lamps = table.lamp_count(),
+                                         .direct_scale = direct.scale(),
+                                         .counted = counted ? 1u : 0u},
                 table.groups(), 1);
+  if (!counted) return;
+  frame.compute(change_, {gpu::reads(changed_), gpu::writes(changes_)},
+                shaders::ChangeConstants{.texels = table.texels}, change_groups, 1);
   frame.to_host(changes_);
 }
 

@@ -15,12 +15,13 @@ class Gather {
 
   // E = 0, L = Le: no bounce yet.
   void start(gpu::Frame& frame, const KeptLinks& links) const;
+  // Over all directions.
+  void bounce(gpu::Frame& frame, const KeptLinks& links) const;
   // Over `parts` parts of the directions (of shaders::PARTS), from `first` on and round; of the others the sums
   // of before count on.
-  void bounce(gpu::Frame& frame, const KeptLinks& links, std::uint32_t first = 0,
-              std::uint32_t parts = shaders::PARTS) const;
+  void part_bounce(gpu::Frame& frame, const KeptLinks& links, std::uint32_t first, std::uint32_t parts) const;
 
-  // After a bounce that the frame has waited for.
+  // Of a bounce over all directions that the frame has waited for.
   struct Change {
     double most;  // largest change of E, any texel and channel [W m^-2]
     double mean;  // of E
@@ -29,12 +30,13 @@ class Gather {
 
  private:
   void gather(gpu::Frame& frame, const KeptLinks& links, std::uint32_t part) const;
-  void end(gpu::Frame& frame, const KeptLinks& links) const;
+  void end(gpu::Frame& frame, const KeptLinks& links, bool counted) const;
 
-  gpu::ComputePipeline gather_, end_;
+  gpu::ComputePipeline gather_, end_, change_;
   gpu::Buffer radiance_;  // vec4 a link: of each texel, without lamps; of a miss and of what is not known
   gpu::Buffer sums_;      // vec4 a texel, part by part
-  gpu::Buffer changes_;   // vec2 a workgroup, host-visible
+  gpu::Buffer changed_;   // vec2 a texel: link_bounce.comp
+  gpu::Buffer changes_;   // vec2 a workgroup of link_change.comp, host-visible
 };
 
 }  // namespace lichtveld::lightfield

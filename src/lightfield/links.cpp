@@ -132,7 +132,7 @@ void Links::Parts::bounce() {
 void Links::Parts::part_bounce() {
   const auto parts = static_cast<std::uint32_t>(settings.step_bounces * shaders::PARTS);
   gpu::Frame frame(device, times);
-  gather.bounce(frame, links, next_part, parts);
+  gather.part_bounce(frame, links, next_part, parts);
   frame.submit_and_wait();
   next_part = (next_part + parts) % shaders::PARTS;
   solution.residual = std::numeric_limits<double>::infinity();
