@@ -16,6 +16,6 @@ void main() {
     most = max(most, layers);
     if (layers > constants.limit) ++over;
   }
-  atomicMax(counters.layers_max, most);
-  atomicAdd(counters.overflow_pixels, over);
+  if (most > counters.layers_max) atomicMax(counters.layers_max, most);  // a stale read only costs an atomic
+  if (over > 0u) atomicAdd(counters.overflow_pixels, over);
 }
