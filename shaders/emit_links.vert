@@ -16,6 +16,7 @@ layout(binding = 1) uniform usamplerBuffer regions;  // rows.glsl
 
 layout(location = 0) out vec2 atlas_coordinate;
 layout(location = 1) out float psf_depth;
+layout(location = 2) flat out uvec2 stored;  // where pixel (0, 0) would be in the store, modulo 2^32, and how far rows are apart
 out gl_PerVertex { vec4 gl_Position; };
 
 void main() {
@@ -23,6 +24,7 @@ void main() {
   const Region region = region_at(regions, gl_InstanceIndex);
   atlas_coordinate = atlas;
   psf_depth = dot(region.view.along, p);
+  stored = uvec2(region.place.w - region.place.y * region.rect.z - region.place.x, region.rect.z);
   // To where the rasteriser would snap it anyway: so that a region looks the same wherever it lies in the store.
   const float steps = 0.5 * float(constants.size) / SUBPIXEL;
   const vec2 projected = vec2(dot(region.view.right, p), dot(region.view.up, p));

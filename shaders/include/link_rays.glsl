@@ -68,8 +68,8 @@ vec3 away_to(vec2 shift, Sight sight, Region region) {
 // The nearest layer of a pixel in front of a receiver, at most `limit` deep along the light that it receives; -1 if there
 // is none. Layers that are not asked for, where `wanted` is false.
 int nearest_in_front(ivec2 pixel, Region region, float sign, float limit, bool wanted) {
-  const ivec2 stored = pixel - region.rect.xy + region.place.xy;
-  const uint index = uint(stored.y) * constants.store_width + uint(stored.x);
+  const ivec2 within = pixel - region.rect.xy;
+  const uint index = uint(region.place.w + within.y * region.rect.z + within.x);
   const uint counts = wanted ? filled[index] : 0u;
   const bool along = sign > 0.0;
   const uint count = min(layers_of(counts, along), CAPACITY);

@@ -99,11 +99,11 @@ struct Receiver {
   uvec4 near;              // as LightMap::near_walls
 };
 
-// Part of a pair's raster, and where it lies in the store that many parts share.
+// Part of a pair's raster, and where it lies in the store that many parts share. Its pixels lie together there, row by row.
 struct Region {
   PsfView view;
   ivec4 rect;   // first column and row, columns, rows, of the pair's raster [pixels]
-  ivec4 place;  // xy: first column and row in the store [pixels]; z: the pair
+  ivec4 place;  // xy: first column and row as it is drawn [pixels]; z: the pair; w: first pixel in the store
 };
 
 // Tiles of texels that look into a region: a workgroup's work.
@@ -114,7 +114,7 @@ struct RouteJob {
 
 struct EmitLinksConstants {
   uint size;  // of a pair's raster [pixels]
-  uint store_width, store_pixels;
+  uint store_pixels;
   uint capacity;  // layers that a pixel has room for
   uint windows;   // regions that are drawn at once
 };
@@ -126,7 +126,7 @@ struct CountLayersConstants {
 
 struct RouteLinksConstants {
   uint size;         // of a pair's raster [pixels]
-  uint store_width, store_pixels;
+  uint store_pixels;
   uint texels;             // links that a pair has
   uint first_pair, pairs;  // of the table's chunk
   uint first_job;          // of this dispatch

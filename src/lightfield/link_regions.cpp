@@ -130,12 +130,13 @@ std::vector<RegionBatch> pack(const std::vector<Part>& parts, const StoreExtent&
       corner = glm::ivec2(0);
       row_height = 0;
     }
+    auto& batch = batches.back();
     region.place.x = corner.x;
     region.place.y = corner.y;
+    region.place.w = static_cast<int>(batch.pixels);
+    batch.pixels += static_cast<std::uint32_t>(extent.x * extent.y);
     corner.x += extent.x;
     row_height = std::max(row_height, extent.y);
-    auto& batch = batches.back();
-    batch.rows = static_cast<std::uint32_t>(corner.y + row_height);
     const auto index = static_cast<std::uint32_t>(batch.regions.size());
     batch.regions.push_back(region);
     const auto first = batch.tiles.size();

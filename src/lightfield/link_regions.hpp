@@ -39,7 +39,7 @@ Part changed(const shaders::PsfView& view, std::uint32_t pair, std::uint32_t pix
 // As much as is emitted and routed at once.
 struct RegionBatch {
   std::vector<shaders::Region> regions;
-  std::uint32_t rows = 0;               // of the store, from its first on, that they lie in
+  std::uint32_t pixels = 0;             // of the store that they take, from its first on
   std::vector<std::uint32_t> tiles;     // that look into the regions, region by region
   std::vector<shaders::RouteJob> jobs;  // in the order of the regions' pairs
 };

@@ -179,11 +179,8 @@ void RouteLinks::record(gpu::Frame& frame, const RegionBatch& batch, const Geome
   frame.clear("emit_links", store.filled);
   const std::vector bindings = {gpu::reads(geometry.offsets), gpu::fetches(regions_), gpu::reads(table.number),
                                 gpu::writes(store.filled), gpu::writes(store.layers)};
-  const shaders::EmitLinksConstants emit{.size = pixels,
-                                         .store_width = store.extent.width,
-                                         .store_pixels = store.pixels(),
-                                         .capacity = store.capacity,
-                                         .windows = gpu::most_windows};
+  const shaders::EmitLinksConstants emit{
+      .size = pixels, .store_pixels = store.pixels(), .capacity = store.capacity, .windows = gpu::most_windows};
   frame.render("emit_links", {.extent = {store.extent.width, store.extent.height}}, bindings,
                {&geometry.vertices, &geometry.indices}, [&](gpu::Draw& draw) {
                  const auto count = static_cast<std::uint32_t>(batch.regions.size());
@@ -197,8 +194,7 @@ void RouteLinks::record(gpu::Frame& frame, const RegionBatch& batch, const Geome
                  }
                });
   frame.compute(count_, {gpu::reads(store.filled), gpu::writes(counters)},
-                shaders::CountLayersConstants{.pixels = batch.rows * store.extent.width, .limit = limit},
-                many_groups, 1);
+                shaders::CountLayersConstants{.pixels = batch.pixels, .limit = limit}, many_groups, 1);
 
   const auto lamps = to.keeps_direct ? table.lamp_count() : 0u;
   const auto look = [&](const gpu::ComputePipeline& pipeline, const LinkTable::Chunk& chunk,
@@ -210,7 +206,6 @@ void RouteLinks::record(gpu::Frame& frame, const RegionBatch& batch, const Geome
                    gpu::writes(counters), gpu::reads(tiles_), gpu::writes(rest_), gpu::reads(to.direct.lamps()),
                    gpu::writes(to.direct.sums())},
                   shaders::RouteLinksConstants{.size = pixels,
-                                               .store_width = store.extent.width,
                                                .store_pixels = store.pixels(),
                                                .texels = table.texels,
                                                .first_pair = chunk.first_pair,
