@@ -89,6 +89,38 @@ TEST_F(Gpu, ManyPassesInOneFrameAreAllTimed) {
   EXPECT_GT(times.at("fill").gpu_ms, 0);
 }
 
+// The host goes on while the device works; what follows in another frame waits on the device.
+TEST_F(Gpu, AFrameFollowsAnotherThatIsUnderWay) {
+  const Buffer a(device(), "test/a", 1 << 20, transfer);
+  const Buffer out(device(), "test/out", 1 << 20, transfer, Memory::host);
+  PassTimes times;
+  Frame first(device(), times);
+  first.clear("fill", a, 7);
+  first.submit();
+  Frame second(device(), times);
+  second.copy("copy", a, out);
+  second.to_host(out);
+  second.submit_and_wait();
+  for (const auto word : out.as<std::uint32_t>()) ASSERT_EQ(word, 7u);
+  EXPECT_EQ(times.count("fill"), 0u);
+  first.wait();
+  EXPECT_EQ(times.at("fill").calls, 1u);
+}
+
+// As an exception would leave it.
+TEST_F(Gpu, AFrameThatNobodyWaitsForIsDoneWhenItGoes) {
+  const Buffer out(device(), "test/out", 1 << 20, transfer, Memory::host);
+  PassTimes times;
+  {
+    Frame frame(device(), times);
+    frame.clear("fill", out, 9);
+    frame.to_host(out);
+    frame.submit();
+  }
+  for (const auto word : out.as<std::uint32_t>()) ASSERT_EQ(word, 9u);
+  EXPECT_EQ(times.at("fill").calls, 1u);
+}
+
 TEST_F(Gpu, ImagesComeBackAsTheyWereSent) {
   const std::vector<std::uint8_t> pixels = {1, 2, 3, 4, 5, 6, 7, 8};
   Buffer staging(device(), "test/staging", pixels.size(), transfer, Memory::host);
