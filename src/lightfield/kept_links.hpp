@@ -73,8 +73,8 @@ class KeptLinks {
   std::unique_ptr<Layered> layered_;
   std::optional<LinkTable::Chunk> again_;  // links of two pairs, to compare
   std::vector<glm::vec3> offsets_;
-  std::set<std::uint32_t>
-      cover_unknown_;          // groups of texels that may be covered otherwise than map_.cover says
+  // Groups of texels that may be covered otherwise than map_.cover says.
+  std::set<std::uint32_t> cover_unknown_;
   std::uint32_t checked_ = 0;  // pairs, since the last move
 };
 
