@@ -16,7 +16,7 @@ layout(binding = 1) uniform usamplerBuffer regions;  // rows.glsl
 
 layout(location = 0) out vec2 atlas_coordinate;
 layout(location = 1) out float psf_depth;
-layout(location = 2) flat out uvec2 stored;  // where pixel (0, 0) would be in the store, modulo 2^32, and how far rows are apart
+layout(location = 2) flat out uvec2 stored;  // where pixel (0, 0) would be in the store, modulo 2^32; columns
 out gl_PerVertex { vec4 gl_Position; };
 
 void main() {

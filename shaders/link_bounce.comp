@@ -14,7 +14,7 @@ layout(binding = 4, rgba32f) uniform readonly image2D emission;
 layout(binding = 5, rgba32f) uniform image2D total_irradiance;           // rgb: E [W m^-2]; a: 1
 layout(binding = 6, rgba32f) uniform writeonly image2D half_difference;  // rgb: (E of half 0 - E of half 1) / 2
 layout(binding = 7) writeonly buffer Radiance { vec4 radiance[]; };      // as gather.glsl's
-layout(binding = 8) writeonly buffer Changes { vec2 changes[]; };        // of each texel: the largest channel's change, and the sum of E
+layout(binding = 8) writeonly buffer Changes { vec2 changes[]; };        // of a texel: the largest, and the sum of E
 layout(push_constant) uniform Push { BounceConstants constants; };
 
 const float PI = 3.14159265358979;

@@ -1,5 +1,5 @@
-// A part of one bounce's sum over pairs: w L of what each texel sees, lamps' own light apart, and w. Included by a shader that
-// defines two_links().
+// A part of one bounce's sum over pairs: w L of what each texel sees, lamps' own light apart, and w. Included by a shader
+// that defines two_links().
 
 layout(local_size_x = TILE) in;
 layout(binding = 1) uniform samplerBuffer radiance;                 // what each link sees. rgb: L; a: 1; of UNKNOWN all 0

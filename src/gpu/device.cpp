@@ -106,6 +106,7 @@ DeviceSummary summarise(const vk::raii::PhysicalDevice& physical) {
   summary.max_image_size = limits.maxImageDimension2D;
   summary.max_storage_buffer = limits.maxStorageBufferRange;
   summary.max_texel_buffer = limits.maxTexelBufferElements;
+  summary.max_groups = limits.maxComputeWorkGroupCount[0];
   summary.subgroup_size = chain.get<vk::PhysicalDeviceSubgroupProperties>().subgroupSize;
   const auto memory = physical.getMemoryProperties();
   for (const auto& heap : std::span(memory.memoryHeaps.data(), memory.memoryHeapCount))

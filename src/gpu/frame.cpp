@@ -62,6 +62,10 @@ void Frame::pass(const std::string& name, const std::function<void()>& record) {
 void Frame::compute_bytes(const ComputePipeline& pipeline, const std::vector<Binding>& bindings,
                           std::span<const std::byte> constants, std::uint32_t groups_x,
                           std::uint32_t groups_y) {
+  if (groups_x > device_.summary().max_groups)
+    throw std::runtime_error(pipeline.name() + ": " + std::to_string(groups_x) + " workgroups, more than the " +
+                             std::to_string(device_.summary().max_groups) + " that " + device_.summary().name +
+                             " starts at once; try a smaller --size");
   for (const Binding& binding : bindings) use(binding, Stage::eComputeShader);
   pass(pipeline.name(), [&] {
     commands_.bindPipeline(vk::PipelineBindPoint::eCompute, pipeline.handle());

@@ -24,14 +24,20 @@ vk::raii::DeviceMemory allocate(const Device& device, const vk::MemoryRequiremen
   }
 }
 
+// Throws if shaders could not see all of it.
 vk::BufferUsageFlags usage_for(const Device& device, const std::string& name, vk::DeviceSize bytes,
-                               vk::Format texels) {
-  if (texels == vk::Format::eUndefined) return {};
-  const auto count = bytes / vk::blockSize(texels), most = device.summary().max_texel_buffer;
+                               vk::BufferUsageFlags usage, vk::Format texels) {
+  const auto& summary = device.summary();
+  if ((usage & vk::BufferUsageFlagBits::eStorageBuffer) && bytes > summary.max_storage_buffer)
+    throw std::runtime_error(name + ": " + std::to_string(bytes >> 20) + " MiB, more than the " +
+                             std::to_string(summary.max_storage_buffer >> 20) + " MiB that " + summary.name +
+                             " has for one buffer; try a smaller --size");
+  if (texels == vk::Format::eUndefined) return usage;
+  const auto count = bytes / vk::blockSize(texels), most = summary.max_texel_buffer;
   if (count > most)
     throw std::runtime_error(name + ": " + std::to_string(count) + " texels, more than the device's " +
                              std::to_string(most) + " for one buffer; try a smaller --size");
-  return vk::BufferUsageFlagBits::eUniformTexelBuffer;
+  return usage | vk::BufferUsageFlagBits::eUniformTexelBuffer;
 }
 
 bool is_stencil(vk::Format format) {
@@ -62,7 +68,7 @@ Buffer::Buffer(const Device& device, std::string name, vk::DeviceSize bytes, vk:
       bytes_(bytes),
       texel_format_(texels),
       buffer_(device.handle(),
-              vk::BufferCreateInfo{.size = bytes, .usage = usage | usage_for(device, name_, bytes, texels)}),
+              vk::BufferCreateInfo{.size = bytes, .usage = usage_for(device, name_, bytes, usage, texels)}),
       memory_(allocate(device, buffer_.getMemoryRequirements(), where, name_)),
       entry_(device.ledger(), name_, buffer_.getMemoryRequirements().size) {
   device.name(buffer_, name_);

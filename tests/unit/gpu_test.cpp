@@ -62,6 +62,17 @@ TEST_F(Gpu, MoreTexelsThanTheDeviceAddressesAreRefusedByName) {
   }
 }
 
+TEST_F(Gpu, ABufferThatShadersDoNotSeeAllOfIsRefusedByName) {
+  const auto most = device().summary().max_storage_buffer;
+  try {
+    const Buffer buffer(device(), "test/large", most + 4, vk::BufferUsageFlagBits::eStorageBuffer);
+    FAIL() << "accepted";
+  } catch (const std::runtime_error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("test/large"));
+    EXPECT_THAT(error.what(), HasSubstr("--size"));
+  }
+}
+
 TEST_F(Gpu, AFramePutsBarriersBetweenDependentPasses) {
   const Buffer a(device(), "test/a", 4096, transfer), b(device(), "test/b", 4096, transfer);
   const Buffer out(device(), "test/out", 4096, transfer, Memory::host);

@@ -30,6 +30,7 @@ struct DeviceSummary {
   std::uint32_t max_image_size = 0;                  // texels a side
   std::uint64_t max_storage_buffer = 0, memory = 0;  // bytes
   std::uint64_t max_texel_buffer = 0;                // texels
+  std::uint32_t max_groups = 0;                      // workgroups of a dispatch, in x
   std::uint32_t subgroup_size = 0;
   bool storage_16_bit = false;  // storage buffers of 16-bit values
   std::string missing;          // empty, or the features we need that it lacks

@@ -93,7 +93,8 @@ class Frame {
   Frame(const Frame&) = delete;
   Frame& operator=(const Frame&) = delete;
 
-  // A compute pass: bindings in the order of the pipeline's kinds, workgroups in x and y.
+  // A compute pass: bindings in the order of the pipeline's kinds, workgroups in x and y. Throws
+  // std::runtime_error where the device cannot start as many in x.
   template <typename Constants>
   void compute(const ComputePipeline& pipeline, const std::vector<Binding>& bindings,
                const Constants& constants, std::uint32_t groups_x, std::uint32_t groups_y) {

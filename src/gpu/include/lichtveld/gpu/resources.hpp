@@ -35,9 +35,8 @@ enum class Memory { device, host };  // host: mapped and coherent
 
 class Buffer {
  public:
-  // Throws std::runtime_error that names the buffer and its size when the device cannot hold it.
-  // With a format, shaders may also fetch it as texels (Kind::texel_buffer): then it throws too when those are
-  // more than the device can address.
+  // Throws std::runtime_error that names the buffer and its size when the device cannot hold it, or shaders
+  // could not see all of it. With a format, they may also fetch it as texels (Kind::texel_buffer).
   Buffer(const Device& device, std::string name, vk::DeviceSize bytes, vk::BufferUsageFlags usage,
          Memory where = Memory::device, vk::Format texels = vk::Format::eUndefined);
 

@@ -27,9 +27,12 @@ Buffer upload(const Device& device, const std::string& name, std::span<const T> 
 // Fills a host buffer from its beginning; one that is too small is replaced by one with room to spare.
 template <typename T>
 void put(const Device& device, Buffer& buffer, std::span<const T> contents) {
-  if (contents.size_bytes() > buffer.size())
-    buffer = Buffer(device, buffer.name(), 2 * contents.size_bytes(), vk::BufferUsageFlagBits::eStorageBuffer,
-                    Memory::host, buffer.texel_format());
+  const vk::DeviceSize bytes = contents.size_bytes();
+  if (bytes > buffer.size()) {
+    const auto room = std::max(bytes, std::min(2 * bytes, device.summary().max_storage_buffer));
+    buffer = Buffer(device, buffer.name(), room, vk::BufferUsageFlagBits::eStorageBuffer, Memory::host,
+                    buffer.texel_format());
+  }
   std::ranges::copy(std::as_bytes(contents), buffer.bytes().begin());
 }
 
