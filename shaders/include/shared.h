@@ -88,8 +88,8 @@ const uint TILE = 64;
 // Texels whose words of a pair lie together in the table of links: 64 bytes, of which TILE holds a whole number.
 const uint LINE = 16;
 
-// Parts of the directions, each of which spans the sphere: two a half. What a step's bounce may leave for the next.
-const uint PARTS = 4;
+// Parts of the directions, as many of either half, each of which spans the sphere: what a bounce may leave for the next.
+const uint PARTS = 8;
 
 // A valid texel as a receiver, where its body is.
 struct Receiver {
@@ -138,9 +138,9 @@ struct RouteLinksConstants {
 struct GatherConstants {
   uint texels;
   uint first_pair, pairs;  // of the table's chunk
-  uint first, end;         // pairs of the chunk; even
-  uint part;               // of the directions
-  uint add;                // 1: to the sum that is there
+  uint all_pairs;
+  uint first_part, parts;  // of the directions, and round
+  uint listed;             // 1: only the workgroups of texels that are listed
 };
 
 struct DirectConstants {

@@ -155,9 +155,9 @@ void add_step_bounces_option(CLI::App& command, lightfield::Settings& settings) 
   command
       .add_option(
           "--step-bounces", settings.step_bounces,
-          "Of --method links: bounces of the map after a move, 1.., or 0.5 or 0.25: one over half or a quarter "
+          "Of --method links: bounces of the map after a move, 1.., or 0.5, 0.25 or 0.125: one over that share "
           "of the directions, in turn; what is missing follows with the next maps. Light straight from lamps "
-          "is always there")
+          "is always there, and all light beside what has moved")
       ->capture_default_str();
 }
 

@@ -29,7 +29,8 @@ struct Choice {
   std::string options;
   void (*make)(lightfield::Settings&);
 };
-const std::array<Choice, 3> choices = {{
+const std::array<Choice, 4> choices = {{
+    {"--step-bounces 0.25", [](lightfield::Settings& settings) { settings.step_bounces = 0.25f; }},
     {"--step-bounces 0.5", [](lightfield::Settings& settings) { settings.step_bounces = 0.5f; }},
     {"--step-bounces 1", [](lightfield::Settings& settings) { settings.step_bounces = 1; }},
     {"--step-bounces 2", [](lightfield::Settings& settings) { settings.step_bounces = 2; }},

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "lichtveld/gpu/transfer.hpp"
+
 #include "shaders/gather_16.comp.h"
 #include "shaders/gather_32.comp.h"
 #include "shaders/link_bounce.comp.h"
@@ -35,9 +37,10 @@ gpu::Buffer dark(const gpu::Device& device, const LinkTable& table) {
 }  // namespace
 
 Gather::Gather(const gpu::Device& device, const LinkTable& table)
-    : gather_(device, "gather", table.bits == 16 ? gpu::Spirv(gather_16_comp) : gpu::Spirv(gather_32_comp),
+    : device_(device),
+      gather_(device, "gather", table.bits == 16 ? gpu::Spirv(gather_16_comp) : gpu::Spirv(gather_32_comp),
               {.kinds = {Kind::storage_buffer, Kind::texel_buffer, Kind::texel_buffer, Kind::storage_buffer,
-                         Kind::storage_image, Kind::storage_buffer},
+                         Kind::storage_image, Kind::storage_buffer, Kind::storage_buffer},
                .push_bytes = sizeof(shaders::GatherConstants)}),
       end_(device, "gather", link_bounce_comp,
            {.kinds = {Kind::texel_buffer, Kind::storage_buffer, Kind::storage_buffer, Kind::storage_image,
@@ -49,6 +52,7 @@ Gather::Gather(const gpu::Device& device, const LinkTable& table)
       radiance_(dark(device, table)),
       sums_(storage(device, "lightfield/sums", shaders::PARTS * std::uint64_t{table.texels} * sizeof(glm::vec4),
                     gpu::Memory::device, vectors)),
+      groups_(storage(device, "lightfield/gather_groups", sizeof(std::uint32_t), gpu::Memory::host)),
       changed_(storage(device, "lightfield/changed", table.texels * sizeof(glm::vec2))),
       changes_(storage(device, "lightfield/changes", change_groups * sizeof(glm::vec2), gpu::Memory::host)) {}
 
@@ -59,39 +63,35 @@ void Gather::start(gpu::Frame& frame, const KeptLinks& links) const {
 }
 
 void Gather::bounce(gpu::Frame& frame, const KeptLinks& links) const {
-  for (std::uint32_t part = 0; part < shaders::PARTS; ++part) gather(frame, links, part);
+  gather(frame, links, 0, shaders::PARTS);
   end(frame, links, true);
 }
 
-void Gather::part_bounce(gpu::Frame& frame, const KeptLinks& links, std::uint32_t first,
-                         std::uint32_t parts) const {
-  for (std::uint32_t part = first; part < first + parts; ++part) gather(frame, links, part % shaders::PARTS);
+void Gather::part_bounce(gpu::Frame& frame, const KeptLinks& links, std::uint32_t first, std::uint32_t parts) {
+  const auto& beside = links.beside();
+  gpu::put<std::uint32_t>(device_, groups_, beside);
+  gather(frame, links, first, parts);
+  if (!beside.empty() && parts < shaders::PARTS)
+    gather(frame, links, first + parts, shaders::PARTS - parts, static_cast<std::uint32_t>(beside.size()));
   end(frame, links, false);
 }
 
-void Gather::gather(gpu::Frame& frame, const KeptLinks& links, std::uint32_t part) const {
+void Gather::gather(gpu::Frame& frame, const KeptLinks& links, std::uint32_t first, std::uint32_t parts,
+                    std::optional<std::uint32_t> listed) const {
   const auto& table = links.table();
-  // Parts of whole words of the table.
-  const std::uint32_t begin = table.pairs / 2 * part / shaders::PARTS * 2,
-                      finish = table.pairs / 2 * (part + 1) / shaders::PARTS * 2;
-  bool add = false;
-  for (const auto& chunk : table.chunks) {
-    const auto first = std::max(begin, chunk.first_pair),
-               last = std::min(finish, chunk.first_pair + chunk.pairs);
-    if (first >= last) continue;
-    frame.compute(gather_,
-                  {gpu::reads(chunk.links), gpu::fetches(radiance_), gpu::fetches(links.directions()),
-                   gpu::reads(table.texel_of), gpu::reads(links.map().normal), gpu::writes(sums_)},
-                  shaders::GatherConstants{.texels = table.texels,
-                                           .first_pair = chunk.first_pair,
-                                           .pairs = chunk.pairs,
-                                           .first = first - chunk.first_pair,
-                                           .end = last - chunk.first_pair,
-                                           .part = part,
-                                           .add = add ? 1u : 0u},
-                  table.groups(), 1);
-    add = true;
-  }
+  for (const auto& chunk : table.chunks)
+    frame.compute(
+        gather_,
+        {gpu::reads(chunk.links), gpu::fetches(radiance_), gpu::fetches(links.directions()),
+         gpu::reads(table.texel_of), gpu::reads(links.map().normal), gpu::writes(sums_), gpu::reads(groups_)},
+        shaders::GatherConstants{.texels = table.texels,
+                                 .first_pair = chunk.first_pair,
+                                 .pairs = chunk.pairs,
+                                 .all_pairs = table.pairs,
+                                 .first_part = first,
+                                 .parts = parts,
+                                 .listed = listed ? 1u : 0u},
+        listed.value_or(table.groups()), 1);
 }
 
 void Gather::end(gpu::Frame& frame, const KeptLinks& links, bool counted) const {

@@ -5,6 +5,8 @@
 // vector each.
 #pragma once
 
+#include <optional>
+
 #include "kept_links.hpp"
 
 namespace lichtveld::lightfield {
@@ -18,8 +20,8 @@ class Gather {
   // Over all directions.
   void bounce(gpu::Frame& frame, const KeptLinks& links) const;
   // Over `parts` parts of the directions (of shaders::PARTS), from `first` on and round; of the others the sums
-  // of before count on.
-  void part_bounce(gpu::Frame& frame, const KeptLinks& links, std::uint32_t first, std::uint32_t parts) const;
+  // of before count on, but beside what has moved, where most of the links are new.
+  void part_bounce(gpu::Frame& frame, const KeptLinks& links, std::uint32_t first, std::uint32_t parts);
 
   // Of a bounce over all directions that the frame has waited for.
   struct Change {
@@ -29,12 +31,16 @@ class Gather {
   Change change(const LinkTable& table) const;
 
  private:
-  void gather(gpu::Frame& frame, const KeptLinks& links, std::uint32_t part) const;
+  // Of all texels, or of so many groups that groups_ lists.
+  void gather(gpu::Frame& frame, const KeptLinks& links, std::uint32_t first, std::uint32_t parts,
+              std::optional<std::uint32_t> listed = {}) const;
   void end(gpu::Frame& frame, const KeptLinks& links, bool counted) const;
 
+  const gpu::Device& device_;
   gpu::ComputePipeline gather_, end_, change_;
   gpu::Buffer radiance_;  // vec4 a link: of each texel, without lamps; of a miss and of what is not known
   gpu::Buffer sums_;      // vec4 a texel, part by part
+  gpu::Buffer groups_;    // uint each, host-visible
   gpu::Buffer changed_;   // vec2 a texel: link_bounce.comp
   gpu::Buffer changes_;   // vec2 a workgroup of link_change.comp, host-visible
 };

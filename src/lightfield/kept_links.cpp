@@ -15,6 +15,9 @@ std::uint32_t capacity_for(std::uint32_t layers) {
   return std::bit_ceil(2 * layers);
 }
 
+// What lies nearer to a moved body than this share of its longest side is beside it.
+constexpr float beside_share = 1;
+
 bool same(const scene::Sphere& a, const scene::Sphere& b) {
   return a.centre == b.centre && a.radius == b.radius;
 }
@@ -23,15 +26,21 @@ scene::Box moved(const scene::Box& box, const glm::vec3& by) {
   return {box.min + by, box.max + by};
 }
 
-// The direction of each pair. Of either half every other one comes first, so that each of its parts spans the
-// sphere.
+scene::Box grown(const scene::Box& box, float share) {
+  const auto extent = box.max - box.min;
+  const float by = share * std::max({extent.x, extent.y, extent.z});
+  return {box.min - by, box.max + by};
+}
+
+// The direction of each pair. Of either half the parts are interleaved, so that each spans the sphere.
 std::vector<Direction> pair_directions(const Settings& settings) {
   const auto all = directions(settings.psf, settings.weights, settings.seed);
   const std::size_t half = all.size() / 4;
   std::vector<Direction> pairs;
+  const std::size_t parts = shaders::PARTS / 2;
   for (const std::size_t first : {std::size_t{0}, half})
-    for (const std::size_t odd : {0, 1})
-      for (auto index = odd; index < half; index += 2) pairs.push_back(all[first + index]);
+    for (std::size_t part = 0; part < parts; ++part)
+      for (auto index = part; index < half; index += parts) pairs.push_back(all[first + index]);
   return pairs;
 }
 
@@ -87,13 +96,17 @@ void KeptLinks::link(const std::vector<glm::vec3>& to, Solution& solution) {
   const auto tiles = table_->boxes(to);
   if (all) {
     for (std::uint32_t group = 0; group < table_->groups(); ++group) cover_unknown_.insert(group);
+    beside_ = {cover_unknown_.begin(), cover_unknown_.end()};
     solution.rays = std::uint64_t{table_->texels} * pairs_.size();
     solution.misses = solution.rays_unknown = solution.overflow_pixels = 0;
     solution.texels_valid = table_->texels;
     route(whole_rasters(), tiles, solution);
   } else {
-    cover_unknown_.merge(
-        groups_beside(moved_boxes(before, to), contact(geometry_.sphere, settings_.raster()), tiles));
+    auto boxes = moved_boxes(before, to);
+    cover_unknown_.merge(groups_beside(boxes, contact(geometry_.sphere, settings_.raster()), tiles));
+    for (auto& box : boxes) box = grown(box, beside_share);
+    const auto beside = groups_beside(boxes, 0, tiles);
+    beside_ = {beside.begin(), beside.end()};
     // One after the other: where their ways cross, the same links change for each.
     for (std::size_t body = 1; body < to.size(); ++body)
       if (to[body] != before[body]) route(changed_parts(body, before[body], to[body]), tiles, solution);

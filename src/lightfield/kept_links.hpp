@@ -32,6 +32,8 @@ class KeptLinks {
   // Writes map().shown: what lies open to the light where the bodies are.
   void find_shown(gpu::Frame& frame);
 
+  // Groups of texels (of shaders::TILE) beside what the last link() found moved.
+  const std::vector<std::uint32_t>& beside() const { return beside_; }
   const LightMap& map() const { return map_; }
   const LinkTable& table() const { return *table_; }
   const DirectLight& direct() const { return *direct_; }
@@ -73,6 +75,7 @@ class KeptLinks {
   std::unique_ptr<Layered> layered_;
   std::optional<LinkTable::Chunk> again_;  // links of two pairs, to compare
   std::vector<glm::vec3> offsets_;
+  std::vector<std::uint32_t> beside_;
   // Groups of texels that may be covered otherwise than map_.cover says.
   std::set<std::uint32_t> cover_unknown_;
   std::uint32_t checked_ = 0;  // pairs, since the last move

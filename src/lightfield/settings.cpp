@@ -1,5 +1,7 @@
 #include "lichtveld/lightfield/settings.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -10,7 +12,8 @@ namespace lichtveld::lightfield {
 
 namespace {
 constexpr int most_step_bounces = 100;
-}
+constexpr std::array parts_of_a_bounce = {0.125f, 0.25f, 0.5f};
+}  // namespace
 
 void check(const Settings& settings) {
   if (settings.size < 16 || settings.size > 4096)
@@ -23,12 +26,13 @@ void check(const Settings& settings) {
   if (settings.layers < 1 || settings.layers > most_layers)
     throw std::invalid_argument(std::to_string(settings.layers) + " layers: there must be 1.." +
                                 std::to_string(most_layers));
-  if (settings.step_bounces != 0.25f && settings.step_bounces != 0.5f &&
+  if (std::ranges::count(parts_of_a_bounce, settings.step_bounces) == 0 &&
       !(settings.step_bounces >= 1 && settings.step_bounces <= most_step_bounces &&
         settings.step_bounces == std::floor(settings.step_bounces)))
-    throw std::invalid_argument(std::to_string(settings.step_bounces) +
-                                " bounces a step: there must be 0.25, 0.5 or a whole number of them, up to " +
-                                std::to_string(most_step_bounces));
+    throw std::invalid_argument(
+        std::to_string(settings.step_bounces) +
+        " bounces a step: there must be 0.125, 0.25, 0.5 or a whole number of them, up to " +
+        std::to_string(most_step_bounces));
   if (settings.bounces == 0u)
     throw std::invalid_argument("0 bounces: 1 is direct light alone, 2 adds one reflection");
 }

@@ -148,7 +148,7 @@ void Bench::expect_updates() {
   const auto choices = table(out() / "choices.csv");
   ASSERT_EQ(choices.size(), 10u);  // counts of PSFs, choices
   EXPECT_EQ(choices[0].at("choice"), "default");
-  EXPECT_EQ(choices[1].at("choice"), "--step-bounces 0.5");
+  EXPECT_EQ(choices[1].at("choice"), "--step-bounces 0.25");
   EXPECT_LT(number(lines[2], "rel_rmse"), number(lines[0], "rel_rmse"));
   EXPECT_LT(number(lines[3], "rel_rmse"), number(lines[1], "rel_rmse"));
 }

@@ -182,7 +182,7 @@ TEST_F(Moves, DirectLightFollowsAtOnce) {
   for (auto& material : black.materials) material.base_colour = glm::vec3(0);
   black.materials[black.surfaces.back().material].emission = {1, 2, 3};  // of a cube
   auto settings = settings_;
-  settings.step_bounces = 0.25f;
+  settings.step_bounces = 0.125f;
   Links links(device(), black, settings);
   auto offsets = at_rest(black);
   links.solve(offsets);
@@ -193,7 +193,7 @@ TEST_F(Moves, DirectLightFollowsAtOnce) {
     links.update(offsets, [](std::uint32_t) { return true; });
   }
   const auto afresh = fresh(black, settings, offsets);
-  for (int part = 0; part < 4; ++part) {  // all that is left: by now each part knows which directions count
+  for (int part = 0; part < 8; ++part) {  // all that is left: by now each part knows which directions count
     offsets[1].x += 1e-6f;
     links.update(offsets, [](std::uint32_t) { return true; });
   }
@@ -210,7 +210,7 @@ TEST_F(Moves, PartBouncesFollowAndArrive) {
   offsets[1].x -= 0.3f;
   const auto afresh = fresh(scene_, settings_, offsets);
   std::map<float, double> missing;
-  for (const float bounces : {0.25f, 0.5f, 1.0f, 2.0f}) {
+  for (const float bounces : {0.125f, 0.25f, 0.5f, 1.0f, 2.0f}) {
     auto settings = settings_;
     settings.step_bounces = bounces;
     Links links(device(), scene_, settings);
@@ -222,6 +222,8 @@ TEST_F(Moves, PartBouncesFollowAndArrive) {
     links.solve(offsets);
     EXPECT_LT(rel_rmse(links.irradiance(), afresh), 2e-3);
   }
+  EXPECT_GT(missing[0.125f], missing[0.25f]);
+  EXPECT_LT(missing[0.125f], 2.2 * missing[1.0f]) << "beside what has moved all directions count";
   EXPECT_GT(missing[0.25f], missing[0.5f]);
   EXPECT_GT(missing[0.5f], missing[1.0f]);
   EXPECT_GT(missing[1.0f], missing[2.0f]);

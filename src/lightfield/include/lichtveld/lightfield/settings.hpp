@@ -24,9 +24,9 @@ struct Settings {
   ABuffer abuffer = ABuffer::stencil;
   Sort sort = Sort::compare_swap;
   Weights weights = Weights::solid_angle;
-  // links: bounces of the map after a move, 1.., or 0.5 or 0.25: over half or a quarter of the directions, in
-  // turn. Light straight from lamps is always of all.
-  float step_bounces = 0.25f;
+  // links: bounces of the map after a move, 1.., or 0.5, 0.25 or 0.125: over that share of the directions, in
+  // turn, and over all of them beside what has moved. Light straight from lamps is always of all.
+  float step_bounces = 0.125f;
   std::uint64_t seed = 0;  // of the directions' rotations and rasters: the same seed gives the same light map
 
   std::uint32_t raster() const { return psf_size > 0 ? psf_size : size; }  // of a PSF [pixels a side]
