@@ -28,9 +28,9 @@ using Places = std::vector<stream::Place>;
 // What a light map after a step may take: half of what 15 a second allow, because browsers may share the
 // machine.
 constexpr auto budget_a_map = 33ms;
-// Bounces of a light map while nothing moves and light still settles: three such maps and it has, unless a step
-// comes between.
-constexpr std::uint32_t bounces_to_settle = 10;
+// Light maps after the last step: with the last of them light has settled, however bright the room. The others
+// have so many bounces.
+constexpr std::uint32_t maps_to_settle = 3, bounces_to_settle = 10;
 constexpr std::size_t cubes_of_players = 2;
 // While nothing moves, pairs of directions that are routed again every second, until all have been.
 constexpr std::uint32_t pairs_a_check = 2;
@@ -123,6 +123,7 @@ class Light {
 // Ends when it is told to, or when signaling refuses the server.
 void run_pipeline(Light& light, PlaceInbox& inbox, MapSender& sender, const stream::Server& server,
                   WorkLog& log, Places places, Clock::duration shortest) {
+  std::uint32_t waited = 0;  // maps since a step
   while (!inbox.stopped() && server.refused().empty()) {
     const auto start = Clock::now();
     sender.wait();
@@ -136,9 +137,10 @@ void run_pipeline(Light& light, PlaceInbox& inbox, MapSender& sender, const stre
     }
     // After a step as little as --step-bounces says, so that the next step is shown soon; while nothing moves
     // what is left, but no longer than until somebody moves again.
-    const bool waits = !news.has_value();
+    waited = news ? 0 : waited + 1;
     auto map = light.update(places, [&](std::uint32_t bounces) {
-      return !waits || bounces >= bounces_to_settle || inbox.has_news();
+      if (waited == 0 || inbox.has_news()) return true;
+      return waited < maps_to_settle && bounces >= bounces_to_settle;
     });
     if (map) sender.send(std::move(*map), places);
     std::this_thread::sleep_until(start + shortest);

@@ -57,15 +57,15 @@ class Program {
 }
 
 /** The room's programs as `./dev play` runs them, from the moment of their start. */
-export function startPlay(t, { port, serveOptions = quick, env = {} }) {
-  const args = ['--port', String(port), '--scene', scenePath, '--', ...serveOptions];
+export function startPlay(t, { port, serveOptions = quick, scene = scenePath, env = {} }) {
+  const args = ['--port', String(port), '--scene', scene, '--', ...serveOptions];
   return new Program(t, 'play', process.execPath, [join(root, 'tools/play.mjs'), ...args], env);
 }
 
 /** The whole room, ready to be joined. */
-export async function play(t, serveOptions = quick) {
+export async function play(t, serveOptions = quick, scene = scenePath) {
   const port = await freePort();
-  await startPlay(t, { port, serveOptions }).says(`ready http://127.0.0.1:${port}\n`);
+  await startPlay(t, { port, serveOptions, scene }).says(`ready http://127.0.0.1:${port}\n`);
   return { url: `http://127.0.0.1:${port}` };
 }
 

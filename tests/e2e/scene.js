@@ -1,4 +1,4 @@
-import { readFileSync } from 'node:fs';
+import { readFileSync, writeFileSync } from 'node:fs';
 
 /** As much of glTF as these tests need: where on the atlas a point of a flat, untransformed wall lies. */
 export class SceneFile {
@@ -10,6 +10,26 @@ export class SceneFile {
     const jsonLength = bytes.readUInt32LE(12);
     this.#json = JSON.parse(bytes.subarray(20, 20 + jsonLength).toString());
     this.#binary = bytes.subarray(20 + jsonLength + 8);
+  }
+
+  /** Writes the scene to another file, every surface with this linear reflectance. */
+  writeWithAlbedo(path, albedo) {
+    const materials = this.#json.materials.map((material) => ({
+      ...material,
+      pbrMetallicRoughness: { baseColorFactor: [albedo, albedo, albedo, 1] },
+    }));
+    const json = Buffer.from(JSON.stringify({ ...this.#json, materials }));
+    const chunk = (type, bytes, filler) => {
+      const padded = Buffer.concat([bytes, Buffer.alloc(-bytes.length & 3, filler)]);
+      const header = Buffer.alloc(8);
+      header.writeUInt32LE(padded.length);
+      header.write(type, 4);
+      return Buffer.concat([header, padded]);
+    };
+    const chunks = Buffer.concat([chunk('JSON', json, ' '), chunk('BIN\0', this.#binary, '\0')]);
+    const header = Buffer.from('glTF\x02\0\0\0\0\0\0\0', 'latin1');
+    header.writeUInt32LE(header.length + chunks.length, 8);
+    writeFileSync(path, Buffer.concat([header, chunks]));
   }
 
   /** The rest place [x, y, z] of the movable nodes, in the file's order. */
