@@ -26,6 +26,8 @@ const largest = 300_000;
 const gap = 12;
 /** As `serve` shows it while something moves: with the light of all bounces, each map a step on. */
 const moving = ['--size', '256', '--psf', '384'];
+/** Milliseconds after which a cube that has not moved is held up by a wall, and not by a slow machine. */
+const stillMs = 1000;
 /** Metres from the left wall at which the strip's pictures are taken, and the part of the page that they show. */
 const stripAt = [0, 0.6, 1.2, 1.8];
 const stripClip = { x: 100, y: 170, width: 400, height: 380 };
@@ -137,8 +139,12 @@ async function drawMovingCube() {
       await keyboard.up(key);
     };
     const standsStill = () => {
-      let last = '';
-      return ({ places }) => last === (last = JSON.stringify(places));
+      let [last, since] = ['', 0];
+      return ({ places }) => {
+        const now = JSON.stringify(places);
+        if (now !== last) [last, since] = [now, Date.now()];
+        return Date.now() - since > stillMs;
+      };
     };
     await hold('ArrowDown', standsStill());
     await hold('ArrowLeft', standsStill());
