@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "lichtveld/gpu/transfer.hpp"
-
 #include "shaders/gather_16.comp.h"
 #include "shaders/gather_32.comp.h"
 #include "shaders/link_bounce.comp.h"

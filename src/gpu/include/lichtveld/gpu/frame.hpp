@@ -87,7 +87,7 @@ class Draw {
 
 class Frame {
  public:
-  // Starts recording. Times of its passes are added to `times` when it is submitted.
+  // Starts recording. Times of its passes are added to `times` when it has been waited for.
   Frame(const Device& device, PassTimes& times);
   ~Frame();
   Frame(const Frame&) = delete;

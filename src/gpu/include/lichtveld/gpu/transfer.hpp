@@ -24,7 +24,8 @@ Buffer upload(const Device& device, const std::string& name, std::span<const T> 
   return buffer;
 }
 
-// Fills a host buffer from its beginning; one that is too small is replaced by one with room to spare.
+// Fills a host buffer from its beginning; one that is too small is replaced by one with room to spare. Not
+// while a frame that uses it is recorded or under way.
 template <typename T>
 void put(const Device& device, Buffer& buffer, std::span<const T> contents) {
   const vk::DeviceSize bytes = contents.size_bytes();
