@@ -1,6 +1,6 @@
-# lichtveld_module(NAME [PUBLIC targets...] [PRIVATE targets...]): the library lichtveld_NAME from the
-# sources beside the calling CMakeLists.txt, with its own include folder. What a module may include is what
-# it links, so the build keeps the walls between modules.
+# lichtveld_module(NAME [PUBLIC targets...] [PRIVATE targets...]): the library lichtveld_NAME from all sources below
+# the calling CMakeLists.txt, with its own include folder. What a module may include is what it links, so the build
+# keeps the walls between modules.
 
 add_library(lichtveld_options INTERFACE)
 target_compile_options(lichtveld_options INTERFACE -Wall -Wextra -Wpedantic -Werror)
@@ -15,7 +15,7 @@ endif()
 
 function(lichtveld_module name)
   cmake_parse_arguments(MODULE "" "" "PUBLIC;PRIVATE" ${ARGN})
-  file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
   list(FILTER sources EXCLUDE REGEX "/main\\.cpp$")
   add_library(lichtveld_${name} STATIC ${sources})
   target_include_directories(lichtveld_${name} PUBLIC include PRIVATE ${CMAKE_CURRENT_SOURCE_DIR})

@@ -2,7 +2,7 @@
 
 // A double-sided surface sends light backwards too. Its back lies exactly as deep as its own texels, so that it is put
 // just behind them: by half a pixel's change of depth and a little for rounding, which is more than a receiver's test
-// allows for (receiver_tolerance in routing.glsl).
+// allows for (receiver_tolerance in receiver_plane.glsl).
 const float BACK_ROUNDING = 1e-4;
 
 float back_shift(float depth) { return 0.5 * fwidth(depth) + BACK_ROUNDING; }

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "command_list.hpp"
-#include "files.hpp"
+#include "lichtveld/files/output.hpp"
 #include "lichtveld/stream/encoder.hpp"
 
 namespace lichtveld::commands {
@@ -29,10 +29,10 @@ BakeJob::NodeMove parse_move(const std::string& text, const scene::Scene& scene)
 
 void bake(const BakeOptions& options) {
   lightfield::check(options.settings);
-  check_place(options.out, ".exr");
-  if (!options.png.empty()) check_place(options.png, ".png");
-  if (!options.report.empty()) check_place(options.report);
-  if (!options.dump.empty()) make_folder(options.dump);
+  files::check_place(options.out, ".exr");
+  if (!options.png.empty()) files::check_place(options.png, ".png");
+  if (!options.report.empty()) files::check_place(options.report);
+  if (!options.dump.empty()) files::make_folder(options.dump);
   if (options.dump_psf >= options.settings.psf)
     throw UsageError("--dump-psf " + std::to_string(options.dump_psf) + ": the directions are numbered 0.." +
                      std::to_string(options.settings.psf - 1));
@@ -43,10 +43,10 @@ void bake(const BakeOptions& options) {
   const Baked baked = options.method == Method::reference ? bake_reference(options, job)
                       : options.method == Method::links   ? bake_links(options, job)
                                                           : bake_thesis(options, job);
-  write_exr(options.out, baked.irradiance, options.settings.size);
+  files::write_exr(options.out, baked.irradiance, options.settings.size);
   if (!options.png.empty())
-    write_bytes(options.png, stream::encode_png(baked.presented, options.settings.size));
-  if (!options.report.empty()) write_text(options.report, baked.report.dump(2) + "\n");
+    files::write_bytes(options.png, stream::encode_png(baked.presented, options.settings.size));
+  if (!options.report.empty()) files::write_text(options.report, baked.report.dump(2) + "\n");
   spdlog::info("{}: {} texels, {} bounces, {:.0f} ms on {}", options.out, baked.report["texels_valid"].dump(),
                baked.report["bounces_used"].dump(), baked.report["time_ms"]["total"].get<double>(),
                baked.report["device"].get<std::string>());

@@ -2,7 +2,7 @@
 #include <type_traits>
 
 #include "bake.hpp"
-#include "files.hpp"
+#include "lichtveld/files/output.hpp"
 #include "lichtveld/gpu/transfer.hpp"
 #include "lichtveld/lightfield/links.hpp"
 #include "lichtveld/lightfield/thesis.hpp"
@@ -64,8 +64,8 @@ Baked bake_thesis(const BakeOptions& options, const BakeJob& job) {
   lightfield::StageObserver observer;
   if (!options.dump.empty()) {
     observer = [&](const std::string& stage, const gpu::Image& image) {
-      write_exr(std::filesystem::path(options.dump) / (stage + ".exr"), gpu::download<glm::vec4>(device, image),
-                image.shape().width);
+      files::write_exr(std::filesystem::path(options.dump) / (stage + ".exr"),
+                       gpu::download<glm::vec4>(device, image), image.shape().width);
     };
   }
   return bake_on<lightfield::Thesis>(device, options, job,

@@ -7,7 +7,7 @@
 
 #include "bench_options.hpp"
 #include "command_list.hpp"
-#include "files.hpp"
+#include "lichtveld/files/output.hpp"
 #include "pass_table.hpp"
 #include "plots.hpp"
 #include "updates.hpp"
@@ -76,8 +76,8 @@ void append(SweepResult& all, SweepResult&& more) {
 
 void write_charts(const SweepResult& result, const fs::path& out) {
   const auto passes = rows_with_passes(result.rows);
-  write_text(out / "chart.csv", chart_csv(result.rows));
-  write_text(out / "passes.csv", pass_csv(passes));
+  files::write_text(out / "chart.csv", chart_csv(result.rows));
+  files::write_text(out / "passes.csv", pass_csv(passes));
   const auto table = rows_of_most_sorts(passes);
   std::printf(
       "\nMilliseconds of all calls of a pass in one solve, medians\n\n%s\nThe thesis' findings here:\n%s\n%s",
@@ -92,7 +92,7 @@ void write_charts(const SweepResult& result, const fs::path& out) {
 void bench(const BenchOptions& options) {
   check_all(options);
   const auto scenes = load_all(options);
-  make_folder(options.out);
+  files::make_folder(options.out);
   const fs::path out = options.out;
   const ReferenceCache cache(options.reference_cache);
   const gpu::Device device(options.device);
@@ -110,8 +110,8 @@ void bench(const BenchOptions& options) {
       std::move(more.begin(), more.end(), std::back_inserter(updates));
     }
   if (!updates.empty()) {
-    write_text(out / "updates.csv", updates_csv(updates));
-    write_text(out / "choices.csv", choices_csv(updates));
+    files::write_text(out / "updates.csv", updates_csv(updates));
+    files::write_text(out / "choices.csv", choices_csv(updates));
     std::printf("\nA light map after each step of the first movable body:\n%s", updates_text(updates).c_str());
   }
   check_validation(device);

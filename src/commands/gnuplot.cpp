@@ -9,7 +9,7 @@
 #include <fstream>
 #include <stdexcept>
 
-#include "files.hpp"
+#include "lichtveld/files/output.hpp"
 #include "options.hpp"
 
 namespace lichtveld::commands {
@@ -56,8 +56,9 @@ std::string terminal(const std::string& format, const Chart& chart) {
 // Runs gnuplot in the scratch folder, and returns the picture there.
 fs::path drawn(const std::string& format, const Chart& chart, const Scratch& scratch) {
   const auto picture = chart.name + "." + format, script = picture + ".gnuplot";
-  write_text(scratch.path() / script, terminal(format, chart) + "set output " + plot_text(picture) + "\n" +
-                                          "set encoding utf8\n" + chart.script + "unset output\n");
+  files::write_text(scratch.path() / script, terminal(format, chart) + "set output " + plot_text(picture) +
+                                                 "\n" + "set encoding utf8\n" + chart.script +
+                                                 "unset output\n");
   const auto command =
       fmt::format("cd {} && gnuplot {} 2>complaints", escaped(scratch.path().string()), escaped(script));
   if (std::system(command.c_str()) == 0) return scratch.path() / picture;
@@ -74,10 +75,11 @@ void draw(const Chart& chart, const fs::path& folder) {
   }
   try {
     const Scratch scratch;
-    for (const auto& [name, bytes] : chart.data) write_text(scratch.path() / name, bytes);
+    for (const auto& [name, bytes] : chart.data) files::write_text(scratch.path() / name, bytes);
     for (const auto& format : chart.formats) {
       const auto picture = drawn(format, chart, scratch);
-      write_whole(folder / picture.filename(), [&](const fs::path& file) { fs::copy_file(picture, file); });
+      files::write_whole(folder / picture.filename(),
+                         [&](const fs::path& file) { fs::copy_file(picture, file); });
     }
   } catch (const std::exception& error) {
     spdlog::warn("no {}: {} (the tables are written)", chart.name, error.what());

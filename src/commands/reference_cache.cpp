@@ -10,8 +10,8 @@
 #include <fstream>
 #include <span>
 
-#include "files.hpp"
-#include "lichtveld/stream/hash.hpp"
+#include "lichtveld/files/hash.hpp"
+#include "lichtveld/files/output.hpp"
 #include "options.hpp"
 
 namespace lichtveld::commands {
@@ -38,7 +38,7 @@ std::string key_of(const scene::Scene& scene, const std::vector<glm::vec3>& offs
                    const reference::Settings& settings) {
   std::string key =
       fmt::format("lichtveld reference {} scene {} size {} bounces {} spp {} seed {} at", tracer_version,
-                  stream::sha256_of_file(scene.file), settings.size,
+                  files::sha256_of_file(scene.file), settings.size,
                   settings.bounces ? std::to_string(*settings.bounces) : "auto", settings.spp, settings.seed);
   for (const auto& offset : offsets) key += fmt::format(" {},{},{}", offset.x, offset.y, offset.z);
   return key + "\n";
@@ -101,8 +101,8 @@ std::optional<std::string> contents_of(const fs::path& file) {
 // A full disk costs the next run some minutes, not this one its result.
 void keep(const fs::path& file, const std::string& bytes) {
   try {
-    write_text(file, bytes);
-  } catch (const UsageError& error) {
+    files::write_text(file, bytes);
+  } catch (const files::OutputError& error) {
     spdlog::warn("the reference is not kept: {}", error.what());
   }
 }
@@ -119,7 +119,7 @@ fs::path ReferenceCache::default_folder() {
 }
 
 ReferenceCache::ReferenceCache(fs::path folder) : folder_(std::move(folder)) {
-  make_folder(folder_);
+  files::make_folder(folder_);
 }
 
 reference::Irradiance ReferenceCache::traced(const scene::Scene& scene, const std::vector<glm::vec3>& offsets,

@@ -15,7 +15,7 @@ class ReferenceCache {
   // $XDG_CACHE_HOME/lichtveld/reference, or the same below ~/.cache or, without a home, the temporary folder.
   static std::filesystem::path default_folder();
 
-  // Makes the folder. Throws UsageError if that cannot be.
+  // Makes the folder. Throws files::OutputError if that cannot be.
   explicit ReferenceCache(std::filesystem::path folder);
 
   // trace() with body i shifted by offsets[i], from the cache or anew. A file is used only if it is whole and

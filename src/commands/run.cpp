@@ -3,6 +3,7 @@
 
 #include "command_list.hpp"
 #include "lichtveld/commands/commands.hpp"
+#include "lichtveld/files/output.hpp"
 #include "options.hpp"
 
 namespace lichtveld::commands {
@@ -21,6 +22,9 @@ int parse_and_run(CLI::App& application, int argc, char** argv) {
     spdlog::error("{}; see lichtveld --help", error.what());
     return bad_usage;
   } catch (const UsageError& error) {
+    spdlog::error("{}", error.what());
+    return bad_usage;
+  } catch (const files::OutputError& error) {
     spdlog::error("{}", error.what());
     return bad_usage;
   } catch (const scene::SceneError& error) {

@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "command_list.hpp"
+#include "lichtveld/files/hash.hpp"
 #include "lichtveld/scene/collision.hpp"
-#include "lichtveld/stream/hash.hpp"
 #include "map_sender.hpp"
 #include "options.hpp"
 #include "place_inbox.hpp"
@@ -166,7 +166,7 @@ void serve(ServeOptions options) {
   const Places rest = places_at_rest(scene);
   stream::Server server({.signaling = options.signaling,
                          .token = token,
-                         .scene_hash = stream::sha256_of_file(options.scene),
+                         .scene_hash = files::sha256_of_file(options.scene),
                          .bind_address = options.bind,
                          .places = rest,
                          .mover =

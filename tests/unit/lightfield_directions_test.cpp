@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "emit_radiance.hpp"
+#include "core/psf_view.hpp"
 #include "lichtveld/lightfield/directions.hpp"
 
 namespace lichtveld::lightfield {

@@ -1,0 +1,57 @@
+#include "links/direct_light.hpp"
+
+#include <numbers>
+
+#include "shaders/direct_light.comp.h"
+
+namespace lichtveld::lightfield {
+
+namespace {
+
+using gpu::Kind;
+
+// The weights of half of the directions that a texel receives come to pi / 2. Few directions may come to more,
+// but never to more than all solid angles of a hemisphere [sr].
+constexpr float most_weight = 2 * std::numbers::pi_v<float>;
+constexpr float most_sum = 0x1p31f;
+
+gpu::Buffer scaled(const gpu::Device& device, const std::vector<glm::vec3>& lamps, float scale) {
+  std::vector<glm::vec3> light;
+  for (const auto& lamp : lamps) light.push_back(scale * lamp);
+  return gpu::upload<glm::vec3>(device, "lightfield/lamps", light, vk::BufferUsageFlagBits::eStorageBuffer);
+}
+
+}  // namespace
+
+DirectLight::DirectLight(const gpu::Device& device, const LinkTable& table)
+    : sum_(device, "direct_light", direct_light_comp,
+           {.kinds = {Kind::storage_buffer, Kind::texel_buffer, Kind::storage_buffer, Kind::storage_image,
+                      Kind::storage_buffer, Kind::storage_buffer},
+            .push_bytes = sizeof(shaders::DirectConstants),
+            .specialisation = {table.bits}}),
+      scale_(table.brightest > 0 ? most_sum / (most_weight * table.brightest) : 1),
+      lamps_(scaled(device, table.lamps, scale_)),
+      sums_(device, "lightfield/direct_light", std::uint64_t{table.texels} * 2 * sizeof(glm::uvec3),
+            vk::BufferUsageFlagBits::eStorageBuffer | vk::BufferUsageFlagBits::eTransferDst) {
+  gpu::PassTimes times;
+  gpu::Frame frame(device, times);
+  frame.clear("direct_light", sums_);
+  frame.submit_and_wait();
+}
+
+void DirectLight::sum(gpu::Frame& frame, const LightMap& map, const LinkTable& table,
+                      const gpu::Buffer& directions) const {
+  frame.clear("direct_light", sums_);
+  for (const auto& chunk : table.chunks)
+    frame.compute(sum_,
+                  {gpu::reads(chunk.links), gpu::fetches(directions), gpu::reads(table.texel_of),
+                   gpu::reads(map.normal), gpu::reads(lamps_), gpu::writes(sums_)},
+                  shaders::DirectConstants{.texels = table.texels,
+                                           .first_pair = chunk.first_pair,
+                                           .pairs = chunk.pairs,
+                                           .lamps = table.lamp_count(),
+                                           .half_pairs = table.pairs / 2},
+                  table.groups(), 1);
+}
+
+}  // namespace lichtveld::lightfield

@@ -1,0 +1,84 @@
+// What --method links knows of a scene but its light: the geometry texture, which texel each texel sees along
+// each pair of directions, and the direct light that follows from it. Goes where the bodies go: outside of what
+// they have swept every link stays.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <set>
+#include <vector>
+
+#include "lichtveld/lightfield/directions.hpp"
+#include "lichtveld/lightfield/links.hpp"
+#include "links/route_links.hpp"
+#include "passes/geometry_texture.hpp"
+
+namespace lichtveld::lightfield {
+
+class KeptLinks {
+ public:
+  // Throws like Links. The device, the scene and `times` must outlive it.
+  KeptLinks(const gpu::Device& device, const scene::Scene& scene, const Settings& settings,
+            gpu::PassTimes& times);
+
+  // Where the bodies are, as they are linked [m]; empty before the first time.
+  const std::vector<glm::vec3>& offsets() const { return offsets_; }
+  // Brings the links to where the bodies are, and what it counts into `solution`.
+  void link(const std::vector<glm::vec3>& to, Solution& solution);
+  // Sums direct light up afresh, where links have changed since: what they have kept, by construction.
+  void sum_direct();
+  // As Links::check.
+  LinkCheck check(std::uint32_t pairs);
+  // Writes map().shown: what lies open to the light where the bodies are.
+  void find_shown(gpu::Frame& frame);
+
+  // Groups of texels (of shaders::TILE) beside what the last link() found moved.
+  const std::vector<std::uint32_t>& beside() const { return beside_; }
+  const LightMap& map() const { return map_; }
+  const LinkTable& table() const { return *table_; }
+  const DirectLight& direct() const { return *direct_; }
+  const gpu::Buffer& directions() const { return directions_; }  // vec4 a pair: xyz; w: solid angle [sr]
+
+ private:
+  // Everything that depends on how many layers a pixel's list holds.
+  struct Layered {
+    Layered(const gpu::Device& device, const Settings& settings, const LinkTable& table, std::uint32_t capacity)
+        : store(device, settings, capacity), route(device, store, table) {}
+    LinkStore store;
+    RouteLinks route;
+    bool placed = false;  // the texels, where they are now
+  };
+
+  void place(gpu::Frame& frame, const std::vector<glm::vec3>& to);
+  Part whole_raster(std::uint32_t pair) const;
+  std::vector<Part> whole_rasters() const;
+  std::vector<Part> changed_parts(std::size_t body, const glm::vec3& from, const glm::vec3& to) const;
+  std::vector<scene::Box> moved_boxes(const std::vector<glm::vec3>& from,
+                                      const std::vector<glm::vec3>& to) const;
+  void route(const std::vector<Part>& parts, const TileBoxes& tiles, Solution& solution);
+  Layered& layered();
+  LinkCheck check_two();
+
+  const gpu::Device& device_;
+  const Settings settings_;
+  gpu::PassTimes& times_;
+  const std::vector<Direction> pairs_;  // the direction of each
+  Geometry geometry_;
+  LightMap map_;
+  GeometryTexture geometry_texture_;
+  gpu::Buffer counters_;    // host-visible
+  gpu::Buffer directions_;  // of pairs_
+  std::unique_ptr<LinkTable> table_;
+  std::unique_ptr<DirectLight> direct_;
+  bool summed_ = false;     // direct light, since the last move
+  std::uint32_t capacity_;  // layers of a pixel's list
+  std::unique_ptr<Layered> layered_;
+  std::optional<LinkTable::Chunk> again_;  // links of two pairs, to compare
+  std::vector<glm::vec3> offsets_;
+  std::vector<std::uint32_t> beside_;
+  // Groups of texels that may be covered otherwise than map_.cover says.
+  std::set<std::uint32_t> cover_unknown_;
+  std::uint32_t checked_ = 0;  // pairs, since the last move
+};
+
+}  // namespace lichtveld::lightfield

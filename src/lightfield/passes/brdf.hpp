@@ -1,0 +1,19 @@
+// brdf: irradiance to what the next bounce emits, L = Le + albedo / pi * E.
+// Thesis, section 4.6. Reads source, albedo, emission, total_irradiance; writes radiance, gutters too, so that
+// bilinear sampling at a chart's edge finds the chart's own light. Costs texels.
+#pragma once
+
+#include "passes/light_map.hpp"
+
+namespace lichtveld::lightfield {
+
+class Brdf {
+ public:
+  explicit Brdf(const gpu::Device& device);
+  void record(gpu::Frame& frame, const LightMap& map) const;
+
+ private:
+  gpu::ComputePipeline reflect_;
+};
+
+}  // namespace lichtveld::lightfield

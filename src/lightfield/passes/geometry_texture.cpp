@@ -1,0 +1,82 @@
+#include "passes/geometry_texture.hpp"
+
+#include <cstddef>
+#include <optional>
+#include <utility>
+
+#include "shaders/geometry_texture.frag.h"
+#include "shaders/geometry_texture.vert.h"
+#include "shaders/geometry_texture_gutter.comp.h"
+#include "shaders/geometry_texture_walls.comp.h"
+#include "shared.h"
+
+namespace lichtveld::lightfield {
+
+namespace {
+constexpr auto rgb32f = vk::Format::eR32G32B32Sfloat;
+constexpr auto rgba32f = vk::Format::eR32G32B32A32Sfloat;
+}  // namespace
+
+GeometryTexture::GeometryTexture(const gpu::Device& device)
+    : draw_(device, "geometry_texture", geometry_texture_vert, geometry_texture_frag,
+            {.kinds = {gpu::Kind::sampled_image}, .push_bytes = sizeof(shaders::GeometryConstants)},
+            {.vertex_stride = sizeof(scene::Vertex),
+             .attributes = {{0, rgb32f, offsetof(scene::Vertex, position)},
+                            {1, rgb32f, offsetof(scene::Vertex, normal)},
+                            {2, vk::Format::eR32G32Sfloat, offsetof(scene::Vertex, atlas)},
+                            {3, vk::Format::eR32G32Sfloat, offsetof(scene::Vertex, colour)}},
+             .colours = std::vector(5, rgba32f)}),
+      walls_(device, "geometry_texture", geometry_texture_walls_comp,
+             {.kinds = {gpu::Kind::storage_image, gpu::Kind::storage_image, gpu::Kind::storage_buffer,
+                        gpu::Kind::texel_buffer, gpu::Kind::storage_image}}),
+      gutter_(
+          device, "geometry_texture", geometry_texture_gutter_comp,
+          {.kinds = std::vector(5, gpu::Kind::storage_image), .push_bytes = sizeof(shaders::GutterConstants)}) {
+}
+
+void GeometryTexture::record(gpu::Frame& frame, const Geometry& geometry, const LightMap& map) {
+  const auto before = std::exchange(drawn_, geometry.shifts);
+  const std::optional<vk::ClearValue> cleared = before.empty() ? std::optional(vk::ClearValue{}) : std::nullopt;
+  gpu::Target target{.extent = map.position.extent()};
+  for (const auto* image : {&map.position, &map.normal, &map.face_normal, &map.albedo, &map.emission})
+    target.colours.push_back({image, cleared});
+  std::vector<gpu::Binding> textures;
+  for (const auto& texture : geometry.textures) textures.push_back(gpu::sampled(texture, geometry.sampler));
+  frame.render(draw_.name(), target, textures, {&geometry.vertices, &geometry.indices}, [&](gpu::Draw& draw) {
+    const auto offsets = geometry.offsets.as<glm::vec4>();
+    draw.geometry(geometry.vertices, geometry.indices);
+    for (const auto& surface : geometry.scene.surfaces) {
+      if (!before.empty() && before[surface.body] == drawn_[surface.body]) continue;
+      const auto& material = geometry.scene.materials[surface.material];
+      draw.bind(draw_, {material.texture < 0 ? textures.back() : textures[material.texture]});
+      draw.push(shaders::GeometryConstants{.offset = offsets[surface.body],
+                                           .base_colour = glm::vec4(material.base_colour, 1),
+                                           .emission = glm::vec4(material.emission, 1),
+                                           .first_triangle = surface.first_index / 3});
+      draw.indexed(surface.first_index, surface.index_count);
+    }
+  });
+  frame.compute(walls_,
+                {gpu::reads(map.position), gpu::reads(map.face_normal), gpu::reads(geometry.walls_first),
+                 gpu::fetches(geometry.walls), gpu::writes(map.near_walls)},
+                map.groups, map.groups);
+}
+
+void GeometryTexture::find_sources(gpu::Frame& frame, const LightMap& map) const {
+  name_sources(frame, map, false, map.source);
+}
+
+void GeometryTexture::find_shown(gpu::Frame& frame, const LightMap& map) const {
+  name_sources(frame, map, true, map.shown);
+}
+
+void GeometryTexture::name_sources(gpu::Frame& frame, const LightMap& map, bool covered,
+                                   const gpu::Image& found) const {
+  frame.compute(gutter_,
+                {gpu::reads(map.position), gpu::reads(map.face_normal), gpu::reads(map.cover),
+                 gpu::reads(covered ? map.source : map.shown), gpu::writes(found)},
+                shaders::GutterConstants{.size = map.size, .covered = covered ? 1u : 0u}, map.groups,
+                map.groups);
+}
+
+}  // namespace lichtveld::lightfield

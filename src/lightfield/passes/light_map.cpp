@@ -1,0 +1,113 @@
+#include "passes/light_map.hpp"
+
+#include <array>
+
+#include "lichtveld/scene/walls.hpp"
+#include "shared.h"
+
+namespace lichtveld::lightfield {
+
+namespace {
+
+using Usage = vk::ImageUsageFlagBits;
+
+gpu::Image atlas_image(const gpu::Device& device, const char* name, std::uint32_t size, vk::Format format,
+                       vk::ImageUsageFlags usage) {
+  return {device,
+          std::string("lightfield/") + name,
+          {.width = size, .height = size},
+          format,
+          usage | Usage::eStorage | Usage::eTransferSrc | Usage::eTransferDst};
+}
+
+// Pixels from a texel whose walls matter: a texel looks at centres up to one pixel away, which a flat direction
+// draws out along the texel's plane; what lies beyond 8 has a cosine under 0.13 and 2 % of the light.
+constexpr float wall_reach = 8;
+
+constexpr auto rgba32f = vk::Format::eR32G32B32A32Sfloat;
+
+std::vector<gpu::Image> upload_textures(const gpu::Device& device, const scene::Scene& scene) {
+  std::vector<gpu::Image> images;
+  for (const auto& texture : scene.textures)
+    images.push_back(gpu::upload_srgb(device, "scene/texture " + std::to_string(images.size()), texture.width,
+                                      texture.height, texture.rgba));
+  constexpr std::array<std::uint8_t, 4> white = {255, 255, 255, 255};
+  images.push_back(gpu::upload_srgb(device, "scene/white", 1, 1, white));
+  return images;
+}
+
+}  // namespace
+
+LightMap::LightMap(const gpu::Device& device, std::uint32_t size)
+    : size(size),
+      groups((size + shaders::GROUP - 1) / shaders::GROUP),
+      position(atlas_image(device, "position", size, rgba32f, Usage::eColorAttachment)),
+      normal(atlas_image(device, "normal", size, rgba32f, Usage::eColorAttachment)),
+      face_normal(atlas_image(device, "face_normal", size, rgba32f, Usage::eColorAttachment)),
+      near_walls(atlas_image(device, "near_walls", size, vk::Format::eR32G32B32A32Uint, {})),
+      albedo(atlas_image(device, "albedo", size, rgba32f, Usage::eColorAttachment)),
+      emission(atlas_image(device, "emission", size, rgba32f, Usage::eColorAttachment)),
+      source(atlas_image(device, "source", size, vk::Format::eR32Uint, {})),
+      shown(atlas_image(device, "shown", size, vk::Format::eR32Uint, {})),
+      cover(atlas_image(device, "cover", size, vk::Format::eR32Sfloat, {})),
+      psf_irradiance(atlas_image(device, "psf_irradiance", size, rgba32f, {})),
+      bounce_irradiance{atlas_image(device, "bounce_irradiance 0", size, rgba32f, {}),
+                        atlas_image(device, "bounce_irradiance 1", size, rgba32f, {})},
+      total_irradiance(atlas_image(device, "total_irradiance", size, rgba32f, {})),
+      half_difference(atlas_image(device, "half_difference", size, rgba32f, {})),
+      radiance(atlas_image(device, "radiance", size, rgba32f, Usage::eSampled)),
+      presented(atlas_image(device, "presented", size, vk::Format::eR8G8B8A8Unorm, {})) {}
+
+void check_on(const gpu::Device& device, const Settings& settings) {
+  check(settings);
+  const auto largest = std::max(settings.size, settings.raster());
+  if (largest > device.summary().max_image_size)
+    throw std::invalid_argument("a size of " + std::to_string(largest) +
+                                " texels or pixels: " + device.summary().name + " can do " +
+                                std::to_string(device.summary().max_image_size) + " at most");
+}
+
+std::vector<std::uint8_t> download_presented(const gpu::Device& device, const LightMap& map) {
+  const auto pixels = gpu::download<std::array<std::uint8_t, 4>>(device, map.presented);
+  return {pixels.front().data(), pixels.front().data() + 4 * pixels.size()};
+}
+
+Geometry::Geometry(const gpu::Device& device, const scene::Scene& scene)
+    : scene(scene),
+      sphere(scene::bounding_sphere(scene)),
+      vertices(gpu::upload<scene::Vertex>(device, "scene/vertices", scene.vertices,
+                                          vk::BufferUsageFlagBits::eVertexBuffer)),
+      indices(gpu::upload<std::uint32_t>(device, "scene/indices", scene.indices,
+                                         vk::BufferUsageFlagBits::eIndexBuffer)),
+      offsets(device, "scene/offsets", scene.bodies.size() * sizeof(glm::vec4),
+              vk::BufferUsageFlagBits::eStorageBuffer, gpu::Memory::host),
+      walls_first(device, "scene/walls_first", sizeof(std::uint32_t), vk::BufferUsageFlagBits::eStorageBuffer,
+                  gpu::Memory::host),
+      walls(device, "scene/walls", sizeof(glm::vec4), vk::BufferUsageFlagBits::eStorageBuffer,
+            gpu::Memory::host, rgba32f),
+      textures(upload_textures(device, scene)),
+      sampler(device.handle(), vk::SamplerCreateInfo{.magFilter = vk::Filter::eLinear,
+                                                     .minFilter = vk::Filter::eLinear,
+                                                     .addressModeU = vk::SamplerAddressMode::eRepeat,
+                                                     .addressModeV = vk::SamplerAddressMode::eRepeat}),
+      device_(device) {
+  device.name(sampler, "scene/sampler");
+}
+
+void Geometry::place(const std::vector<glm::vec3>& to, std::uint32_t pixels) {
+  shifts = to;
+  sphere = scene::bounding_sphere(scene, shifts);
+  const float pixel = 2 * sphere.radius / static_cast<float>(pixels);
+  const auto found = scene::find_walls(scene, shifts, shaders::CONTACT * pixel, wall_reach * pixel);
+  std::vector<glm::vec4> ends;
+  for (const auto& line : found.lines) {
+    ends.emplace_back(line.a, line.rises ? 1 : 0);
+    ends.emplace_back(line.b, 0);
+  }
+  gpu::put<std::uint32_t>(device_, walls_first, found.first);
+  gpu::put<glm::vec4>(device_, walls, ends);
+  const auto places = offsets.as<glm::vec4>();
+  for (std::size_t body = 0; body < shifts.size(); ++body) places[body] = glm::vec4(shifts[body], 0);
+}
+
+}  // namespace lichtveld::lightfield

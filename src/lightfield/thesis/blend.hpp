@@ -1,0 +1,23 @@
+// blend: adds one direction's light to the bounce, and at a bounce's end makes it the total irradiance.
+// Thesis, section 4.6. E = pi * sum_k w_k L_k / sum_k w_k; dividing by the weights that were met makes every
+// row of the transport operator sum to one. The two halves of the directions are summed apart, so that their
+// disagreement tells the error. Reads psf_irradiance, or bounce_irradiance; costs texels.
+#pragma once
+
+#include "passes/light_map.hpp"
+
+namespace lichtveld::lightfield {
+
+class Blend {
+ public:
+  explicit Blend(const gpu::Device& device);
+  // `half`: which of the bounce's two sums the direction belongs to.
+  void psf_into_bounce(gpu::Frame& frame, const LightMap& map, std::uint32_t half) const;
+  // Both halves into total_irradiance, their disagreement into half_difference; clears the bounce.
+  void bounce_into_total(gpu::Frame& frame, const LightMap& map) const;
+
+ private:
+  gpu::ComputePipeline psf_, bounce_;
+};
+
+}  // namespace lichtveld::lightfield
