@@ -11,6 +11,9 @@ using glm::ivec4;
 using glm::uvec4;
 using glm::vec4;
 using uint = std::uint32_t;
+#define SHARED_FUNCTION inline
+#else
+#define SHARED_FUNCTION
 #endif
 
 // Invocations of a compute workgroup, a side, over texels or pixels.
@@ -71,11 +74,6 @@ struct RoutingConstants {
   uint count;  // 1: count rays and misses, and what lies in contact
 };
 
-struct GutterConstants {
-  uint size;     // of the atlas [texels]
-  uint covered;  // 1: texels that other geometry lies on are filled like gutters
-};
-
 struct LayerConstants {
   uint size, layer;
 };
@@ -90,6 +88,9 @@ const uint LINE = 16;
 
 // Parts of the directions, as many of either half, each of which spans the sphere: what a bounce may leave for the next.
 const uint PARTS = 8;
+
+// Of so many pairs, where a part begins: of whole words of the table, which hold two links.
+SHARED_FUNCTION uint first_pair_of_part(uint pairs, uint part) { return pairs / 2 * part / PARTS * 2; }
 
 // A valid texel as a receiver, where its body is.
 struct Receiver {

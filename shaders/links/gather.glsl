@@ -13,12 +13,9 @@ layout(push_constant) uniform Push { GatherConstants constants; };
 // L of what a link sees.
 vec4 seen(uint link) { return texelFetch(radiance, int(min(link, UNKNOWN(constants.texels)))); }
 
-// Parts are of whole words of the table.
-uint first_pair_of(uint part) { return constants.all_pairs / 2u * part / PARTS * 2u; }
-
 void gather(uint me, vec3 n, uint part) {
-  const uint begin = first_pair_of(part), first = max(begin, constants.first_pair);
-  const uint end = min(first_pair_of(part + 1u), constants.first_pair + constants.pairs);
+  const uint begin = first_pair_of_part(constants.all_pairs, part), first = max(begin, constants.first_pair);
+  const uint end = min(first_pair_of_part(constants.all_pairs, part + 1u), constants.first_pair + constants.pairs);
   if (first >= end) return;
   const uint mine = part * constants.texels + me;
   vec4 sum = begin < constants.first_pair ? sums[mine] : vec4(0.0);  // what the chunk before has told

@@ -4,6 +4,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "shared.h"
 #include "direct_light.glsl"
+#include "finish.glsl"
 
 layout(local_size_x = TILE) in;
 layout(binding = 0) uniform samplerBuffer sums;                 // as gather.glsl's
@@ -17,8 +18,6 @@ layout(binding = 7) writeonly buffer Radiance { vec4 radiance[]; };      // as g
 layout(binding = 8) writeonly buffer Changes { vec2 changes[]; };        // of a texel: the largest, and the sum of E
 layout(push_constant) uniform Push { BounceConstants constants; };
 
-const float PI = 3.14159265358979;
-
 // From half of the directions. rgb: sum of w L, lamps with it; a: of w.
 vec4 received(uint me, uint half_of) {
   const uint first = half_of * PARTS / 2u;
@@ -30,8 +29,6 @@ vec4 received(uint me, uint half_of) {
   return vec4(sum.rgb + from_lamps, sum.a);
 }
 
-vec3 irradiance(vec4 sum) { return sum.a > 0.0 ? PI * sum.rgb / sum.a : vec3(0.0); }
-
 void main() {
   const uint me = gl_GlobalInvocationID.x;
   if (me >= constants.texels) return;
@@ -39,10 +36,10 @@ void main() {
   const ivec2 texel = ivec2(texel_of[me] % width, texel_of[me] / width);
   const vec3 before = imageLoad(total_irradiance, texel).rgb;
   const vec4 first = received(me, 0u), second = received(me, 1u);
-  const vec3 e = irradiance(first + second), change = abs(e - before);
+  const vec3 e = irradiance_of(first + second), change = abs(e - before);
   imageStore(total_irradiance, texel, vec4(e, 1.0));
-  imageStore(half_difference, texel, vec4((irradiance(first) - irradiance(second)) / 2.0, 0.0));
+  imageStore(half_difference, texel, vec4((irradiance_of(first) - irradiance_of(second)) / 2.0, 0.0));
   const vec3 own = me < constants.lamps ? vec3(0.0) : imageLoad(emission, texel).rgb;
-  radiance[me] = vec4(own + imageLoad(albedo, texel).rgb / PI * e, 1.0);
+  radiance[me] = vec4(radiance_of(own, imageLoad(albedo, texel).rgb, e), 1.0);
   if (constants.counted != 0u) changes[me] = vec2(max(change.r, max(change.g, change.b)), e.r + e.g + e.b);
 }

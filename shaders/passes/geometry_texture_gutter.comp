@@ -1,5 +1,5 @@
-// Finds for each texel the one it takes its light from: itself on an open chart texel, else the nearest of those within
-// the gutter's width.
+// Finds for each texel the one whose light players see there: itself on an open chart texel, else the nearest of those
+// within the gutter's width.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shared.h"
@@ -8,9 +8,8 @@ layout(local_size_x = GROUP, local_size_y = GROUP) in;
 layout(binding = 0, rgba32f) uniform readonly image2D position;
 layout(binding = 1, rgba32f) uniform readonly image2D face_normal;
 layout(binding = 2, r32f) uniform readonly image2D cover;  // above 0: most rays start in contact with a surface
-layout(binding = 3, r32ui) uniform readonly uimage2D source;  // found before, when none counted as covered
-layout(binding = 4, r32ui) uniform writeonly uimage2D found;  // y * size + x, or NO_TEXEL
-layout(push_constant) uniform Push { GutterConstants constants; };
+layout(binding = 3, r32ui) uniform readonly uimage2D source;  // as LightMap::source
+layout(binding = 4, r32ui) uniform writeonly uimage2D shown;   // y * size + x, or NO_TEXEL
 
 // A covered texel takes its light from the same face, not from a chart that happens to lie beside it: within 10 degrees,
 // so that curved surfaces count as one.
@@ -19,16 +18,16 @@ const float SAME_FACE = 0.985;
 const int SIDE = 2 * GUTTER + 1;  // of the square that is looked at [texels]
 
 bool on_chart(ivec2 texel) { return imageLoad(position, texel).a > 0.0; }
-bool open(ivec2 texel) { return on_chart(texel) && (constants.covered == 0u || imageLoad(cover, texel).r <= 0.0); }
+bool open(ivec2 texel) { return on_chart(texel) && imageLoad(cover, texel).r <= 0.0; }
 
 void main() {
   const ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
-  const uint size = constants.size;
+  const uint size = uint(imageSize(position).x);
   if (any(greaterThanEqual(texel, ivec2(size)))) return;
   const bool chart = on_chart(texel);
   uint nearest = chart ? uint(texel.y) * size + uint(texel.x) : NO_TEXEL;
   bool done = open(texel);
-  if (constants.covered != 0u && !chart) {  // most gutters need no search: the nearest of all is open
+  if (!chart) {  // most gutters need no search: the nearest of all is open
     const uint of_all = imageLoad(source, texel).r;
     done = of_all == NO_TEXEL || open(ivec2(of_all % size, of_all / size));
     if (done) nearest = of_all;
@@ -46,5 +45,5 @@ void main() {
       nearest = uint(near.y) * size + uint(near.x);
     }
   }
-  imageStore(found, texel, uvec4(nearest));
+  imageStore(shown, texel, uvec4(nearest));
 }

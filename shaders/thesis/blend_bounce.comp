@@ -3,6 +3,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shared.h"
+#include "finish.glsl"
 
 layout(local_size_x = GROUP, local_size_y = GROUP) in;
 layout(binding = 0, rgba32f) uniform image2D bounce_irradiance_0;  // of each half of the directions
@@ -11,16 +12,12 @@ layout(binding = 2, rgba32f) uniform readonly image2D position;
 layout(binding = 3, rgba32f) uniform writeonly image2D total_irradiance;  // rgb: E [W m^-2]; a: 1 on valid texels
 layout(binding = 4, rgba32f) uniform writeonly image2D half_difference;   // rgb: (E of half 0 - E of half 1) / 2
 
-const float PI = 3.14159265358979;
-
-vec3 irradiance(vec4 sum) { return sum.a > 0.0 ? PI * sum.rgb / sum.a : vec3(0.0); }
-
 void main() {
   const ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
   if (any(greaterThanEqual(texel, imageSize(total_irradiance)))) return;
   const vec4 first = imageLoad(bounce_irradiance_0, texel), second = imageLoad(bounce_irradiance_1, texel);
-  imageStore(total_irradiance, texel, vec4(irradiance(first + second), imageLoad(position, texel).a));
-  imageStore(half_difference, texel, vec4((irradiance(first) - irradiance(second)) / 2.0, 0.0));
+  imageStore(total_irradiance, texel, vec4(irradiance_of(first + second), imageLoad(position, texel).a));
+  imageStore(half_difference, texel, vec4((irradiance_of(first) - irradiance_of(second)) / 2.0, 0.0));
   imageStore(bounce_irradiance_0, texel, vec4(0.0));
   imageStore(bounce_irradiance_1, texel, vec4(0.0));
 }

@@ -7,6 +7,7 @@
 
 #include "command_list.hpp"
 #include "lichtveld/files/output.hpp"
+#include "lichtveld/scene/atlas.hpp"
 #include "lichtveld/stream/encoder.hpp"
 
 namespace lichtveld::commands {
@@ -40,12 +41,10 @@ void bake(const BakeOptions& options) {
   scene::check_atlas(job.scene, options.settings.size);
   for (const auto& text : options.moves) job.moves.push_back(parse_move(text, job.scene));
 
-  const Baked baked = options.method == Method::reference ? bake_reference(options, job)
-                      : options.method == Method::links   ? bake_links(options, job)
-                                                          : bake_thesis(options, job);
+  const Baked baked =
+      options.method == reference_method ? bake_reference(options, job) : bake_light_field(options, job);
   files::write_exr(options.out, baked.irradiance, options.settings.size);
-  if (!options.png.empty())
-    files::write_bytes(options.png, stream::encode_png(baked.presented, options.settings.size));
+  if (baked.shown) files::write_bytes(options.png, stream::encode_png(baked.shown->bytes, baked.shown->size));
   if (!options.report.empty()) files::write_text(options.report, baked.report.dump(2) + "\n");
   spdlog::info("{}: {} texels, {} bounces, {:.0f} ms on {}", options.out, baked.report["texels_valid"].dump(),
                baked.report["bounces_used"].dump(), baked.report["time_ms"]["total"].get<double>(),
@@ -54,7 +53,7 @@ void bake(const BakeOptions& options) {
 
 }  // namespace
 
-std::vector<glm::vec3> BakeJob::moved() const {
+scene::Offsets BakeJob::moved() const {
   auto offsets = at_rest();
   for (const auto& move : moves) offsets[move.body] += move.by;
   return offsets;
@@ -83,7 +82,7 @@ void add_bake(CLI::App& application) {
       ->capture_default_str();
   add_quality_options(*command, options->settings);
   add_bounces_option(*command, options->settings);
-  add_method_option(*command, options->method, {Method::thesis, Method::links, Method::reference});
+  add_method_option(*command, options->method, true);
   add_light_field_options(*command, options->settings);
   command->add_option("--spp", options->spp, "Paths a texel of --method reference, 1..1000000")
       ->capture_default_str();
@@ -92,15 +91,15 @@ void add_bake(CLI::App& application) {
     choose_method(*command, options->method);
     // What the other method would take is a mistake, not something to pass over in silence.
     const std::vector<std::string> of_others =
-        options->method == Method::reference
+        options->method == reference_method
             ? std::vector<std::string>{"--psf",    "--psf-size", "--weights", "--abuffer", "--sort",
                                        "--layers", "--live",     "--dump",    "--dump-psf"}
-        : options->method == Method::links
+        : options->method == "links"
             ? std::vector<std::string>{"--spp", "--abuffer", "--sort", "--dump", "--dump-psf"}
             : std::vector<std::string>{"--spp"};
     for (const auto& name : of_others)
       if (command->count(name) > 0)
-        throw UsageError(name + " means nothing to --method " + name_of(options->method) + "; leave it out");
+        throw UsageError(name + " means nothing to --method " + options->method + "; leave it out");
     bake(*options);
   });
 }

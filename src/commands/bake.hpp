@@ -1,11 +1,12 @@
 // What the methods of `lichtveld bake` share.
 #pragma once
 
-#include <functional>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "lichtveld/lightfield/shown.hpp"
 #include "options.hpp"
 
 namespace lichtveld::commands {
@@ -15,7 +16,7 @@ struct BakeOptions {
   std::uint32_t dump_psf = 0;
   std::vector<std::string> moves;
   bool live = false;
-  Method method = Method::links;
+  std::string method = "links";
   gpu::DeviceOptions device;
   lightfield::Settings settings;
   std::uint32_t spp = 256;  // of the reference
@@ -30,18 +31,18 @@ struct BakeJob {
   };
   std::vector<NodeMove> moves;
 
-  std::vector<glm::vec3> at_rest() const { return std::vector<glm::vec3>(scene.bodies.size(), glm::vec3(0)); }
-  std::vector<glm::vec3> moved() const;  // every move made
+  scene::Offsets at_rest() const { return scene::Offsets(scene.bodies.size(), glm::vec3(0)); }
+  scene::Offsets moved() const;  // every move made
 };
 
 struct Baked {
   std::vector<glm::vec4> irradiance;
-  std::vector<std::uint8_t> presented;  // sRGB RGBA; empty unless options.png asks for it
+  std::optional<lightfield::Shown> shown;  // if options.png asks for it
   nlohmann::ordered_json report;
 };
 
-Baked bake_links(const BakeOptions& options, const BakeJob& job);
-Baked bake_thesis(const BakeOptions& options, const BakeJob& job);
+// By an engine of the light field; by path tracing.
+Baked bake_light_field(const BakeOptions& options, const BakeJob& job);
 Baked bake_reference(const BakeOptions& options, const BakeJob& job);
 
 }  // namespace lichtveld::commands

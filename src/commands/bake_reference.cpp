@@ -20,15 +20,15 @@ Baked bake_reference(const BakeOptions& options, const BakeJob& job) {
   });
   const std::chrono::duration<double, std::milli> total = std::chrono::steady_clock::now() - start;
 
-  Baked baked{.irradiance = traced.texels, .presented = {}, .report = {}};
+  Baked baked{.irradiance = traced.texels, .shown = {}, .report = {}};
   if (!options.png.empty()) {
     const gpu::Device device(options.device);
-    baked.presented = lightfield::present(device, job.scene, options.settings.size, job.moved(), traced.texels);
+    baked.shown = lightfield::present(device, job.scene, job.moved(), {traced.texels, options.settings.size});
     check_validation(device);
   }
   baked.report = {
       {"device", "CPU, " + std::to_string(std::thread::hardware_concurrency()) + " threads"},
-      {"method", name_of(Method::reference)},
+      {"method", reference_method},
       {"size", settings.size},
       {"spp", settings.spp},
       {"seed", settings.seed},
@@ -37,7 +37,10 @@ Baked bake_reference(const BakeOptions& options, const BakeJob& job) {
       {"texels_valid", traced.texels_valid},
       {"miss_fraction",
        traced.rays > 0 ? static_cast<double>(traced.misses) / static_cast<double>(traced.rays) : 0.0},
-      {"time_ms", {{"total", total.count()}, {"passes", nlohmann::json::object()}}}};
+      {"time_ms",
+       {{"total", total.count()},
+        {"passes", nlohmann::json::object()},
+        {"host", {{"path_tracing", {{"calls", 1}, {"ms", total.count()}}}}}}}};
   return baked;
 }
 

@@ -7,7 +7,6 @@
 #include <set>
 
 #include "lichtveld/lightfield/directions.hpp"
-#include "updates.hpp"
 
 namespace lichtveld::commands {
 
@@ -103,12 +102,12 @@ void each_once(const std::string& option, std::vector<Value>& values) {
 }  // namespace
 
 void add_bench_options(CLI::App& command, BenchOptions& options) {
-  auto& sweep = options.sweep;
-  command.add_option("--scene", options.scenes, "Scenes, .glb or .gltf; repeat it for several")
+  auto& sweep = options.bench.sweep;
+  command.add_option("--scene", options.bench.scenes, "Scenes, .glb or .gltf; repeat it for several")
       ->capture_default_str()
       ->allow_extra_args(false)
       ->type_name("FILE");
-  command.add_option("--out", options.out, "The folder for the tables (.csv) and charts (.svg, .png)")
+  command.add_option("--out", options.bench.out, "The folder for the tables (.csv) and charts (.svg, .png)")
       ->capture_default_str()
       ->type_name("DIR");
   command.add_flag("--quick", options.quick, "Fewer and smaller light maps: two minutes on two cores");
@@ -132,7 +131,7 @@ void add_bench_options(CLI::App& command, BenchOptions& options) {
             "How a texel finds its layer")
       ->type_name("bitonic|compare-swap|scan,..")
       ->default_str(fmt::format("all up to {} directions, then compare-swap for stencil and scan for list",
-                                all_sorts_up_to));
+                                bench::all_sorts_up_to));
   add_words(
       command, "--psf-size", sweep.psf_sizes, parse_psf_size,
       "Pixels a side of a PSF, or as in 2x so many for each texel of the atlas' side. The first goes with "
@@ -154,12 +153,12 @@ void add_bench_options(CLI::App& command, BenchOptions& options) {
   add_counts(command, "--path-spp", sweep.path_spps, usual.path_spps, quick.path_spps,
              "Paths a texel of path tracing as a method to compare with; 0: none");
   command
-      .add_option("--reference-cache", options.reference_cache,
+      .add_option("--reference-cache", options.bench.reference_cache,
                   "Where references are kept, for they take minutes; they may be deleted at any time")
       ->type_name("DIR")
-      ->default_str(ReferenceCache::default_folder().string());
+      ->default_str(bench::default_reference_cache().string());
   add_count(
-      command, "--updates", options.updates, usual.updates, quick.updates,
+      command, "--updates", options.bench.updates, usual.updates, quick.updates,
       fmt::format("Steps of the first movable body, with a light map after each; 0: none. With {} directions "
                   "unless --psf says otherwise",
                   text_of(usual.update_psfs)));
@@ -168,23 +167,24 @@ void add_bench_options(CLI::App& command, BenchOptions& options) {
 
 void complete(const CLI::App& command, BenchOptions& options) {
   const auto& effort = options.quick ? quick : usual;
-  auto& sweep = options.sweep;
+  auto& sweep = options.bench.sweep;
   const auto fill = [&](const std::string& option, auto& value, const auto& otherwise) {
     if (command.count(option) == 0) value = otherwise;
   };
-  fill("--psf", options.update_psfs, effort.update_psfs);
+  fill("--psf", options.bench.update_psfs, effort.update_psfs);
   fill("--size", sweep.sizes, effort.sizes);
   fill("--psf", sweep.psfs, effort.psfs);
   fill("--path-spp", sweep.path_spps, effort.path_spps);
   fill("--repeats", sweep.repeats, effort.repeats);
   fill("--spp", sweep.truth_spp, effort.truth_spp);
-  fill("--updates", options.updates, effort.updates);
+  fill("--updates", options.bench.updates, effort.updates);
   fill("--bounces", sweep.bounces, std::vector<std::optional<std::uint32_t>>{2});
   fill("--abuffer", sweep.abuffers, std::vector{ABuffer::stencil, ABuffer::list});
   fill("--weights", sweep.weights, std::vector{Weights::solid_angle, Weights::equal});
   fill("--psf-size", sweep.psf_sizes,
-       options.quick ? std::vector<PsfSize>{{1, true}} : std::vector<PsfSize>{{1, true}, {2, true}});
-  fill("--reference-cache", options.reference_cache, ReferenceCache::default_folder().string());
+       options.quick ? std::vector<lightfield::PsfSize>{{1, true}}
+                     : std::vector<lightfield::PsfSize>{{1, true}, {2, true}});
+  fill("--reference-cache", options.bench.reference_cache, bench::default_reference_cache().string());
 
   each_once("--size", sweep.sizes);
   each_once("--psf", sweep.psfs);
@@ -194,12 +194,12 @@ void complete(const CLI::App& command, BenchOptions& options) {
   each_once("--weights", sweep.weights);
   if (command.count("--sort") > 0) each_once("--sort", sweep.sorts);
   std::erase(sweep.path_spps, 0u);
-  if (command.count("--psf") > 0) options.update_psfs = sweep.psfs;
+  if (command.count("--psf") > 0) options.bench.update_psfs = sweep.psfs;
   if (sweep.repeats < 1) throw UsageError("--repeats 0: at least 1");
   if (sweep.truth_spp < 2) throw UsageError("--spp " + std::to_string(sweep.truth_spp) + ": 2..1000000");
 
   std::set<std::string> names;
-  for (const auto& scene : options.scenes)
+  for (const auto& scene : options.bench.scenes)
     if (const auto name = std::filesystem::path(scene).stem().string(); !names.insert(name).second)
       throw UsageError("--scene " + scene +
                        ": tables and charts tell scenes by their file's name, and there are two " + name);

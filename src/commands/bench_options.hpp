@@ -4,19 +4,14 @@
 #include <string>
 #include <vector>
 
+#include "lichtveld/bench/options.hpp"
 #include "options.hpp"
-#include "sweep.hpp"
 
 namespace lichtveld::commands {
 
 struct BenchOptions {
-  std::vector<std::string> scenes = {"assets/cornell.glb"};
-  std::string out = "build/bench";
-  std::string reference_cache;
+  bench::Options bench;
   bool quick = false;
-  std::uint32_t updates = 60;
-  std::vector<std::uint32_t> update_psfs;  // those of the walks
-  SweepOptions sweep;
   gpu::DeviceOptions device;
 };
 

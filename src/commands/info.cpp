@@ -2,6 +2,7 @@
 #include <cstdio>
 
 #include "command_list.hpp"
+#include "lichtveld/scene/atlas.hpp"
 #include "options.hpp"
 
 namespace lichtveld::commands {

@@ -5,29 +5,11 @@
 #include <map>
 
 #include "lichtveld/lightfield/directions.hpp"
+#include "lichtveld/lightfield/engine.hpp"
 
 namespace lichtveld::commands {
 
 namespace {
-
-using lightfield::ABuffer;
-using lightfield::Sort;
-using lightfield::Weights;
-
-const std::map<std::string, ABuffer> abuffers = {{"stencil", ABuffer::stencil}, {"list", ABuffer::list}};
-const std::map<std::string, Method> methods = {
-    {"thesis", Method::thesis}, {"links", Method::links}, {"reference", Method::reference}};
-const std::map<std::string, Sort> sorts = {
-    {"bitonic", Sort::bitonic}, {"compare-swap", Sort::compare_swap}, {"scan", Sort::scan}};
-const std::map<std::string, Weights> all_weights = {{"solid-angle", Weights::solid_angle},
-                                                    {"equal", Weights::equal}};
-
-template <typename Value>
-std::string key_of(const std::map<std::string, Value>& names, Value wanted) {
-  for (const auto& [name, value] : names)
-    if (value == wanted) return name;
-  throw std::logic_error("a value without a name");
-}
 
 // An option whose values are the keys of `names`.
 template <typename Value>
@@ -45,7 +27,7 @@ void add_choice(CLI::App& command, const std::string& option, Value& value,
           },
           help)
       ->type_name(choices)
-      ->default_str(key_of(names, value));
+      ->default_str(std::ranges::find(names, value, [](const auto& entry) { return entry.second; })->first);
 }
 
 }  // namespace
@@ -70,31 +52,31 @@ void check_validation(const gpu::Device& device) {
                              " complaints (above): a bug, please report it with this command line");
 }
 
-void add_method_option(CLI::App& command, Method& method, const std::vector<Method>& choices) {
-  std::map<std::string, Method> names;
-  for (const Method choice : choices) names[name_of(choice)] = choice;
+void add_method_option(CLI::App& command, std::string& method, bool with_reference) {
+  std::map<std::string, std::string> names;
   std::string help;
-  for (const auto& [name, choice] : names)
-    help += (help.empty() ? "" : "; ") + name +
-            (choice == Method::thesis  ? ": every PSF rendered afresh in every bounce"
-             : choice == Method::links ? ": what each texel sees is kept, a move redoes only what it touched"
-                                       : ": path tracing on the CPU, the truth to compare with");
+  const auto add = [&](const std::string& name, const std::string& summary) {
+    names[name] = name;
+    help += (help.empty() ? "" : "; ") + name + ": " + summary;
+  };
+  for (const auto& engine : lightfield::engines()) add(engine.name, engine.summary);
+  if (with_reference) add(reference_method, "path tracing on the CPU, the truth to compare with");
   add_choice(command, "--method", method, names, help);
 }
 
-void choose_method(const CLI::App& command, Method& method) {
+void choose_method(const CLI::App& command, std::string& method) {
   if (command.count("--method") > 0) return;
   for (const char* name : {"--abuffer", "--sort", "--dump", "--dump-psf"})
     if (const auto* option = command.get_option_no_throw(name); option != nullptr && option->count() > 0)
-      method = Method::thesis;
+      method = "thesis";
 }
 
 void add_light_field_options(CLI::App& command, lightfield::Settings& settings) {
-  add_choice(command, "--abuffer", settings.abuffer, abuffers,
+  add_choice(command, "--abuffer", settings.thesis.abuffer, lightfield::words_of_abuffers(),
              "Of --method thesis, and asks for it: how a PSF keeps all its layers: routed by the stencil to "
              "the samples of a pixel, or in a list of "
              "each pixel");
-  add_choice(command, "--sort", settings.sort, sorts,
+  add_choice(command, "--sort", settings.thesis.sort, lightfield::words_of_sorts(),
              "Of --method thesis, and asks for it: how a texel finds its layer: sorting them, or scanning for "
              "the nearest in front");
   command
@@ -120,7 +102,7 @@ void add_quality_options(CLI::App& command, lightfield::Settings& settings) {
       ->type_name("N|Fx")
       ->default_str("1x");
   add_choice(
-      command, "--weights", settings.weights, all_weights,
+      command, "--weights", settings.weights, lightfield::words_of_weights(),
       "What a direction counts for: its solid angle (the thesis' correction factor), or the same for all");
   command
       .add_option("--seed", settings.seed,
@@ -128,13 +110,8 @@ void add_quality_options(CLI::App& command, lightfield::Settings& settings) {
       ->capture_default_str();
 }
 
-std::uint32_t PsfSize::pixels(std::uint32_t size) const {
-  if (times && value == 1) return 0;  // the settings' word for it
-  return static_cast<std::uint32_t>(std::max(std::lround(times ? value * size : value), 1L));
-}
-
-PsfSize parse_psf_size(const std::string& text) {
-  PsfSize size{.times = text.ends_with('x')};
+lightfield::PsfSize parse_psf_size(const std::string& text) {
+  lightfield::PsfSize size{.times = text.ends_with('x')};
   const auto number = size.times ? text.substr(0, text.size() - 1) : text;
   if (!CLI::detail::lexical_cast(number, size.value) || !(size.value > 0 && size.value <= 8192) ||
       (!size.times && size.value != std::floor(size.value)))
@@ -154,7 +131,7 @@ std::optional<std::uint32_t> parse_bounces(const std::string& text) {
 void add_step_bounces_option(CLI::App& command, lightfield::Settings& settings) {
   command
       .add_option(
-          "--step-bounces", settings.step_bounces,
+          "--step-bounces", settings.links.step_bounces,
           "Of --method links: bounces of the map after a move, 1.., or 0.5, 0.25 or 0.125: one over that share "
           "of the directions, in turn; what is missing follows with the next maps. Light straight from lamps "
           "is always there, and all light beside what has moved")
@@ -169,19 +146,6 @@ void add_bounces_option(CLI::App& command, lightfield::Settings& settings) {
           "missing")
       ->type_name("auto|N")
       ->default_str(settings.bounces ? std::to_string(*settings.bounces) : "auto");
-}
-
-std::string name_of(ABuffer abuffer) {
-  return key_of(abuffers, abuffer);
-}
-std::string name_of(Method method) {
-  return key_of(methods, method);
-}
-std::string name_of(Sort sort) {
-  return key_of(sorts, sort);
-}
-std::string name_of(Weights weights) {
-  return key_of(all_weights, weights);
 }
 
 }  // namespace lichtveld::commands

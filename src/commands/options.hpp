@@ -23,13 +23,14 @@ void add_device_options(CLI::App& command, gpu::DeviceOptions& options);
 // Throws std::runtime_error if the validation layers complained: a programmer's error must not pass unseen.
 void check_validation(const gpu::Device& device);
 
-enum class Method { thesis, links, reference };
+// What computes the light: an engine of the light field, or path tracing.
+inline constexpr const char* reference_method = "reference";
 
-// --method: one of these; others are refused by name.
-void add_method_option(CLI::App& command, Method& method, const std::vector<Method>& choices);
+// --method: an engine, or where it is said so the reference.
+void add_method_option(CLI::App& command, std::string& method, bool with_reference);
 
 // Without --method, options that only the thesis' method has ask for it. After the command line is read.
-void choose_method(const CLI::App& command, Method& method);
+void choose_method(const CLI::App& command, std::string& method);
 
 // --abuffer, --sort, --layers: how a light field is computed, whatever its quality.
 void add_light_field_options(CLI::App& command, lightfield::Settings& settings);
@@ -37,18 +38,8 @@ void add_light_field_options(CLI::App& command, lightfield::Settings& settings);
 // --size, --psf, --psf-size, --weights, --seed: what a light field's error depends on.
 void add_quality_options(CLI::App& command, lightfield::Settings& settings);
 
-// The side of a PSF's raster: so many pixels, or so many times the light map's texels.
-struct PsfSize {
-  double value = 1;
-  bool times = true;
-  bool operator==(const PsfSize&) const = default;
-
-  // Settings::psf_size for a light map of `size` texels a side.
-  std::uint32_t pixels(std::uint32_t size) const;
-};
-
 // "512", "2x" or "0.5x". Throws UsageError for anything else.
-PsfSize parse_psf_size(const std::string& text);
+lightfield::PsfSize parse_psf_size(const std::string& text);
 
 // "auto" (nothing) or a number from 1. Throws UsageError for anything else.
 std::optional<std::uint32_t> parse_bounces(const std::string& text);
@@ -58,11 +49,5 @@ void add_step_bounces_option(CLI::App& command, lightfield::Settings& settings);
 
 // --bounces auto|N.
 void add_bounces_option(CLI::App& command, lightfield::Settings& settings);
-
-// The last part of a name, for options whose values are words: "compare-swap".
-std::string name_of(lightfield::ABuffer abuffer);
-std::string name_of(lightfield::Sort sort);
-std::string name_of(lightfield::Weights weights);
-std::string name_of(Method method);
 
 }  // namespace lichtveld::commands

@@ -2,22 +2,24 @@
 
 namespace lichtveld::commands {
 
-nlohmann::ordered_json report(const gpu::Device& device, Method method, const lightfield::Settings& settings,
-                              const lightfield::Solution& solution, const gpu::PassTimes& times,
-                              double total_ms) {
-  nlohmann::ordered_json passes, memory;
-  for (const auto& [name, time] : times) passes[name] = {{"calls", time.calls}, {"gpu_ms", time.gpu_ms}};
+nlohmann::ordered_json report(const gpu::Device& device, const std::string& method,
+                              const lightfield::Settings& settings, const lightfield::Solution& solution,
+                              const gpu::Times& times, double total_ms) {
+  nlohmann::ordered_json passes, host, memory;
+  for (const auto& [name, time] : times.passes) passes[name] = {{"calls", time.calls}, {"gpu_ms", time.gpu_ms}};
+  for (const auto& [name, time] : times.host) host[name] = {{"calls", time.calls}, {"ms", time.ms}};
   std::uint64_t total_bytes = 0;
   for (const auto& [name, bytes] : device.ledger()->bytes_by_name()) {
     memory[name] = bytes;
     total_bytes += bytes;
   }
   memory["total"] = total_bytes;
+  const bool thesis = method == "thesis";  // others have one way to find layers
   return {{"device", device.summary().name},
           {"driver", device.summary().driver},
-          {"method", name_of(method)},
-          {"abuffer", name_of(method == Method::links ? lightfield::ABuffer::list : settings.abuffer)},
-          {"sort", name_of(method == Method::links ? lightfield::Sort::scan : settings.sort)},
+          {"method", method},
+          {"abuffer", name_of(thesis ? settings.thesis.abuffer : lightfield::ABuffer::list)},
+          {"sort", name_of(thesis ? settings.thesis.sort : lightfield::Sort::scan)},
           {"size", settings.size},
           {"psf", settings.psf},
           {"psf_size", settings.raster()},
@@ -35,7 +37,7 @@ nlohmann::ordered_json report(const gpu::Device& device, Method method, const li
           {"unknown_fraction",
            solution.rays > 0 ? static_cast<double>(solution.rays_unknown) / static_cast<double>(solution.rays)
                              : 0.0},
-          {"time_ms", {{"total", total_ms}, {"passes", passes}}},
+          {"time_ms", {{"total", total_ms}, {"passes", passes}, {"host", host}}},
           {"memory_bytes", memory}};
 }
 

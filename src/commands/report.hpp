@@ -2,15 +2,16 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <string>
 
-#include "lichtveld/gpu/frame.hpp"
+#include "lichtveld/gpu/device.hpp"
+#include "lichtveld/lightfield/light_field.hpp"
 #include "lichtveld/lightfield/settings.hpp"
-#include "options.hpp"
 
 namespace lichtveld::commands {
 
-nlohmann::ordered_json report(const gpu::Device& device, Method method, const lightfield::Settings& settings,
-                              const lightfield::Solution& solution, const gpu::PassTimes& times,
-                              double total_ms);
+nlohmann::ordered_json report(const gpu::Device& device, const std::string& method,
+                              const lightfield::Settings& settings, const lightfield::Solution& solution,
+                              const gpu::Times& times, double total_ms);
 
 }  // namespace lichtveld::commands

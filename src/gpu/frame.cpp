@@ -23,7 +23,7 @@ vk::RenderingAttachmentInfo attachment_info(const Attachment& attachment, vk::Im
 
 }  // namespace
 
-Frame::Frame(const Device& device, PassTimes& times) : device_(device), times_(times) {
+Frame::Frame(const Device& device) : device_(device) {
   commands_ = std::move(vk::raii::CommandBuffers(device.handle(), {.commandPool = *device.commands(),
                                                                    .level = vk::CommandBufferLevel::ePrimary,
                                                                    .commandBufferCount = 1})
@@ -167,8 +167,10 @@ void Frame::submit() {
 
 void Frame::wait() {
   const auto fence = std::exchange(submitted_, nullptr);
+  const auto start = std::chrono::steady_clock::now();
   if (device_.handle().waitForFences(*fence, true, UINT64_MAX) != vk::Result::eSuccess)
     throw std::runtime_error("the device did not finish a frame");
+  device_.times().waited(std::chrono::steady_clock::now() - start);
   std::vector<std::uint64_t> ticks;
   for (std::size_t pool = 0; pool < queries_.size(); ++pool) {
     const auto used = std::min<std::size_t>(queries_a_pool, 2 * timed_.size() - pool * queries_a_pool);
@@ -177,12 +179,9 @@ void Frame::wait() {
                                                  vk::QueryResultFlagBits::e64 | vk::QueryResultFlagBits::eWait);
     ticks.insert(ticks.end(), values.begin(), values.end());
   }
-  for (const Timed& timed : timed_) {
-    PassTime& time = times_[timed.pass];
-    ++time.calls;
-    time.gpu_ms +=
-        static_cast<double>(ticks[timed.query + 1] - ticks[timed.query]) * device_.timestamp_period() * 1e-6;
-  }
+  for (const Timed& timed : timed_)
+    device_.times().add_pass(timed.pass, static_cast<double>(ticks[timed.query + 1] - ticks[timed.query]) *
+                                             device_.timestamp_period() * 1e-6);
 }
 
 }  // namespace lichtveld::gpu

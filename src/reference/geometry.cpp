@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "texture.hpp"
-
 namespace lichtveld::reference {
 namespace {
 
@@ -12,10 +10,6 @@ namespace {
 // unit sphere are rounded by up to 6e-8.
 constexpr float kInset = 2e-6f;
 constexpr float kLift = 1e-6f;
-
-glm::vec3 weights(const Hit& hit) {
-  return {1 - hit.barycentric.x - hit.barycentric.y, hit.barycentric.x, hit.barycentric.y};
-}
 
 }  // namespace
 
@@ -51,24 +45,18 @@ float Geometry::area(std::uint32_t triangle) const {
 }
 
 glm::vec3 Geometry::position(const Hit& hit) const {
-  const glm::vec3 w = weights(hit);
+  const glm::vec3 w = scene::weights(hit);
   const glm::vec3 &a = corner(hit.triangle, 0), &b = corner(hit.triangle, 1), &c = corner(hit.triangle, 2);
   const glm::vec3 at = w.x * a + w.y * b + w.z * c, to_middle = (a + b + c) / 3.0f - at;
   return at + to_middle * (kInset / std::max(glm::length(to_middle), kInset));
 }
 
 glm::vec3 Geometry::albedo(const Hit& hit) const {
-  const scene::Material& surface = material(hit.triangle);
-  if (surface.texture < 0) return surface.base_colour;
-  const glm::vec3 w = weights(hit);
-  const glm::vec2 at = w.x * vertex(hit.triangle, 0).colour + w.y * vertex(hit.triangle, 1).colour +
-                       w.z * vertex(hit.triangle, 2).colour;
-  const auto& texture = scene_.textures[static_cast<std::size_t>(surface.texture)];
-  return glm::clamp(surface.base_colour * sample_srgb(texture, at), 0.0f, 1.0f);
+  return scene::albedo_at(scene_, material(hit.triangle), hit);
 }
 
 glm::vec3 Geometry::normal(const Hit& hit) const {
-  const glm::vec3 w = weights(hit);
+  const glm::vec3 w = scene::weights(hit);
   const glm::vec3 sum = w.x * vertex(hit.triangle, 0).normal + w.y * vertex(hit.triangle, 1).normal +
                         w.z * vertex(hit.triangle, 2).normal;
   const float length = glm::length(sum);

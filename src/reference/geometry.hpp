@@ -6,15 +6,11 @@
 #include <glm/glm.hpp>
 #include <vector>
 
-#include "lichtveld/scene/scene.hpp"
+#include "lichtveld/scene/surface_point.hpp"
 
 namespace lichtveld::reference {
 
-// A place on the surfaces. Barycentric coordinates weigh the triangle's second and third corner.
-struct Hit {
-  std::uint32_t triangle;
-  glm::vec2 barycentric;
-};
+using Hit = scene::SurfacePoint;
 
 // A place that light is gathered at, on the side that `normal` and `face` point to.
 struct Receiver {
@@ -33,6 +29,7 @@ class Geometry {
   const std::vector<glm::vec3>& positions() const { return positions_; }  // of Scene::vertices
   const std::vector<std::uint32_t>& indices() const { return scene_.indices; }
 
+  const scene::Scene& scene() const { return scene_; }
   const scene::Material& material(std::uint32_t triangle) const;
   // Unit; the front is where the corners are seen counter-clockwise.
   const glm::vec3& face(std::uint32_t triangle) const { return faces_[triangle]; }

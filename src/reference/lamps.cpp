@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lichtveld/scene/lights.hpp"
+
 namespace lichtveld::reference {
 namespace {
 
@@ -14,7 +16,7 @@ double mean(const glm::vec3& colour) {
 
 Lamps::Lamps(const Geometry& geometry) : geometry_(geometry) {
   double power = 0;
-  for (std::uint32_t triangle = 0; triangle < geometry.triangles(); ++triangle) {
+  for (const auto triangle : scene::emitting_triangles(geometry.scene())) {
     const double more = geometry.area(triangle) * mean(geometry.material(triangle).emission);
     if (!(more > 0)) continue;
     power += more;

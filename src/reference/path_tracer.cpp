@@ -12,8 +12,8 @@
 #include <string>
 #include <thread>
 
+#include "lichtveld/scene/atlas.hpp"
 #include "path.hpp"
-#include "texels.hpp"
 
 namespace lichtveld::reference {
 namespace {
@@ -98,7 +98,7 @@ Irradiance trace(const scene::Scene& scene, const std::vector<glm::vec3>& offset
 
   const Geometry geometry(scene, offsets);
   const PathTracer tracer(geometry, settings.bounces);
-  const std::vector<Texel> texels = valid_texels(scene, settings.size);
+  const auto texels = scene::valid_texels(scene, settings.size);
   Irradiance result;
   result.texels.resize(std::size_t{settings.size} * settings.size, glm::vec4(0));
   result.standard_error.resize(result.texels.size(), 0);

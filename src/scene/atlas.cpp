@@ -1,4 +1,4 @@
-// check_atlas(): every triangle's TEXCOORD_1 rasterised, to see which texels lie on a chart and which on two.
+// check_atlas(): every triangle's TEXCOORD_1 rasterised, to see which texels lie on two charts.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -6,7 +6,7 @@
 #include <optional>
 #include <utility>
 
-#include "lichtveld/scene/scene.hpp"
+#include "lichtveld/scene/atlas.hpp"
 
 namespace lichtveld::scene {
 namespace {
@@ -37,7 +37,7 @@ std::optional<ChartTriangle> chart_triangle(const Scene& scene, std::size_t firs
   return result;
 }
 
-// The texels of row j whose centres lie at least `margin` inside (outside, if negative), as [begin, end).
+// The texels of row j whose centres lie at least `margin` inside, as [begin, end).
 std::pair<std::int64_t, std::int64_t> row_span(const ChartTriangle& triangle, std::int64_t j, std::int64_t size,
                                                double margin) {
   const double n = static_cast<double>(size), v = (static_cast<double>(j) + 0.5) / n;
@@ -77,11 +77,10 @@ std::uint32_t check_atlas(const Scene& scene, std::uint32_t size) {
     throw SceneError("atlas size " + std::to_string(size) + " is outside 1..16384");
   const std::int64_t n = size;
   // Neighbours in a chart meet at edges whose ends were rounded to 32 bits, up to 6e-8 of the atlas: a centre
-  // within this distance of an edge is on both sides and on no side too many.
+  // within this distance of an edge is shared by nobody.
   const double margin = 1e-3 / size + 2.5e-7;
   constexpr std::uint32_t kNone = ~0u;
   std::vector<std::uint32_t> owner(std::size_t{size} * size, kNone);  // surface whose triangle holds the centre
-  std::vector<bool> covered(owner.size());
   Overlaps overlaps;
   std::uint64_t shared = 0;
   // Enough to describe the damage; a hostile file could stack millions of charts on each other.
@@ -95,8 +94,6 @@ std::uint32_t check_atlas(const Scene& scene, std::uint32_t size) {
       const auto first = static_cast<std::int64_t>(std::floor(triangle->top * size - 0.5));
       const auto last = static_cast<std::int64_t>(std::ceil(triangle->bottom * size - 0.5));
       for (std::int64_t j = std::max<std::int64_t>(first, 0); j <= std::min(last, n - 1); ++j) {
-        const auto [from, to] = row_span(*triangle, j, n, -margin);
-        for (std::int64_t i = from; i < to; ++i) covered[static_cast<std::size_t>(j * n + i)] = true;
         const auto [begin, end] = row_span(*triangle, j, n, margin);
         for (std::int64_t i = begin; i < end; ++i) {
           std::uint32_t& held = owner[static_cast<std::size_t>(j * n + i)];
@@ -115,7 +112,7 @@ std::uint32_t check_atlas(const Scene& scene, std::uint32_t size) {
     throw SceneError(scene.file + ": charts overlap in TEXCOORD_1: " + describe(overlaps) + " of " +
                      std::to_string(size) + " x " + std::to_string(size) + " texels; unwrap without overlaps");
   }
-  const auto valid = static_cast<std::uint32_t>(std::ranges::count(covered, true));
+  const auto valid = static_cast<std::uint32_t>(valid_texels(scene, size).size());
   if (valid == 0) {
     throw SceneError(scene.file + ": no texel of " + std::to_string(size) + " x " + std::to_string(size) +
                      " lies on a chart; enlarge the charts in TEXCOORD_1, or bake at a larger size");

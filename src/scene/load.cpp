@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <map>
 
+#include "lichtveld/scene/lights.hpp"
 #include "model.hpp"
 #include "parts.hpp"
 
@@ -89,10 +90,8 @@ void warn_of(const Scene& scene, const Oddities& oddities) {
     spdlog::warn("{}: {} primitives have unusable normals; their faces' own are used", scene.file,
                  oddities.bad_normals);
   }
-  const bool lit = std::ranges::any_of(scene.surfaces, [&](const Surface& surface) {
-    return scene.materials[surface.material].emission != glm::vec3(0);
-  });
-  if (!lit) spdlog::warn("{}: nothing emits light; give a material an emissiveFactor", scene.file);
+  if (emitting_triangles(scene).empty())
+    spdlog::warn("{}: nothing emits light; give a material an emissiveFactor", scene.file);
 }
 
 Scene read_scene(const std::filesystem::path& file) {

@@ -4,7 +4,7 @@
 
 namespace lichtveld::scene {
 
-Sphere bounding_sphere(const Scene& scene, const std::vector<glm::vec3>& offsets) {
+Sphere bounding_sphere(const Scene& scene, const Offsets& offsets) {
   // Bodies without triangles take no room.
   std::vector<bool> has_triangles(scene.bodies.size());
   for (const Surface& surface : scene.surfaces) has_triangles[surface.body] = true;

@@ -17,8 +17,8 @@
 #include <string>
 #include <string_view>
 
-#include "lichtveld/stream/server.hpp"
 #include "lichtveld/stream/session.hpp"
+#include "lichtveld/stream/work.hpp"
 
 namespace lichtveld::stream {
 

@@ -42,9 +42,9 @@ void Outbox::send_text(const std::string& text) {
 }
 
 void Outbox::send_map_part() {
-  const auto chunk = chunk_at(current_->png, offset_);
+  const auto chunk = chunk_at(current_->bytes, offset_);
   if (chunk.empty()) {
-    send_text(std::string(map_complete));
+    send_text(std::string(map_complete(current_->format)));
     counts_.sending += Clock::now() - current_came_;
     current_.reset();
     ++counts_.maps;

@@ -9,11 +9,14 @@
 #include <utility>
 #include <vector>
 
+#include "lichtveld/stream/map.hpp"
+
 namespace lichtveld::stream {
 
 // One map, shared by all who get it.
 struct Map {
-  std::vector<std::uint8_t> png;
+  MapFormat format;
+  std::vector<std::uint8_t> bytes;
   std::string places;  // as sent (protocol.hpp); empty without cubes
 };
 

@@ -21,9 +21,17 @@ void append(std::string& text, float value) {
 
 }  // namespace
 
-std::span<const std::uint8_t> chunk_at(std::span<const std::uint8_t> png, std::size_t offset) {
-  if (offset >= png.size()) return {};
-  return png.subspan(offset, std::min(map_chunk, png.size() - offset));
+std::string_view map_complete(MapFormat format) {
+  switch (format) {
+    case MapFormat::png:
+      return "PNG_TRANSFER_COMPLETE";
+  }
+  throw std::logic_error("a map in no format");
+}
+
+std::span<const std::uint8_t> chunk_at(std::span<const std::uint8_t> map, std::size_t offset) {
+  if (offset >= map.size()) return {};
+  return map.subspan(offset, std::min(map_chunk, map.size() - offset));
 }
 
 std::string format_places(const std::vector<Place>& places) {

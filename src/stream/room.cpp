@@ -45,9 +45,10 @@ void Server::Room::run() {
   }
 }
 
-void Server::Room::publish(std::vector<std::uint8_t> png, const std::vector<Place>& places) {
-  if (png.empty()) throw std::invalid_argument("the published map has no bytes");
-  auto map = std::make_shared<const Map>(Map{std::move(png), format_places(places)});
+void Server::Room::publish(EncodedMap encoded) {
+  if (encoded.bytes.empty()) throw std::invalid_argument("the published map has no bytes");
+  auto map =
+      std::make_shared<const Map>(Map{encoded.format, std::move(encoded.bytes), format_places(encoded.places)});
   asio::post(io_, [this, map = std::move(map)] {
     newest_ = map;
     for (auto& [number, guest] : guests_) {

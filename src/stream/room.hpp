@@ -32,7 +32,7 @@ struct Server::Room final : PeerListener {
   Room& operator=(const Room&) = delete;
 
   // Thread-safe, as in Server.
-  void publish(std::vector<std::uint8_t> png, const std::vector<Place>& places);
+  void publish(EncodedMap encoded);
   ServerStatistics statistics() const;
   std::string refused() const;
 

@@ -35,8 +35,8 @@ ServerOptions checked(ServerOptions options) {
 
 Server::Server(ServerOptions options) : room_(std::make_unique<Room>(checked(std::move(options)))) {}
 Server::~Server() = default;
-void Server::publish(std::vector<std::uint8_t> png, std::vector<Place> places) {
-  room_->publish(std::move(png), places);
+void Server::publish(EncodedMap map) {
+  room_->publish(std::move(map));
 }
 ServerStatistics Server::statistics() const {
   return room_->statistics();

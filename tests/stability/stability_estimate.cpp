@@ -6,8 +6,8 @@
 
 #include "device_for_tests.hpp"
 #include "known_scenes.hpp"
-#include "lichtveld/lightfield/thesis.hpp"
 #include "lichtveld/reference/path_tracer.hpp"
+#include "light_fields.hpp"
 
 namespace lichtveld::stability {
 namespace {
@@ -98,14 +98,14 @@ TEST_P(ErrorEstimate, IsWithinAFactorOfOneAndAHalf) {
   };
   const auto one = traced(1), other = traced(2);
   for (const std::uint32_t psf : {24u, 96u, 384u}) {
-    lightfield::Thesis thesis(device(), scene,
-                              {.size = size,
-                               .psf = psf,
-                               .bounces = bounces,
-                               .abuffer = lightfield::ABuffer::list,
-                               .sort = lightfield::Sort::scan});
-    const double estimate = thesis.solve(offsets).error_estimate,
-                 error = true_error(thesis.irradiance(), one, other);
+    const auto thesis = lightfield::make_light_field(
+        "thesis", device(), scene,
+        {.size = size,
+         .psf = psf,
+         .bounces = bounces,
+         .thesis = {.abuffer = lightfield::ABuffer::list, .sort = lightfield::Sort::scan}});
+    const double estimate = settled(*thesis, offsets).error_estimate,
+                 error = true_error(thesis->irradiance(), one, other);
     std::printf("%-18s %4u PSFs: estimate %6.2f %%, true %6.2f %%, ratio %.2f\n", GetParam().name.c_str(), psf,
                 100 * estimate, 100 * error, estimate / error);
     EXPECT_LT(estimate / error, 1.5) << psf;

@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "device_for_tests.hpp"
-#include "lichtveld/lightfield/thesis.hpp"
 #include "lichtveld/reference/path_tracer.hpp"
+#include "light_fields.hpp"
 #include "stability_table.hpp"
 
 namespace lichtveld::stability {
@@ -32,15 +32,15 @@ class Stability : public testing::WithDevice, public ::testing::WithParamInterfa
           lichtveld::reference::trace(scene, {}, {.size = of.size, .bounces = of.bounces, .spp = of.spp});
       return testing::texels(scene, of.size, light.texels, light.standard_error);
     }
-    lightfield::Thesis thesis(
-        device(), scene,
+    const auto thesis = lightfield::make_light_field(
+        "thesis", device(), scene,
         {.size = of.size,
          .psf = of.psf,
          .bounces = of.bounces,
-         .abuffer = method == stencil ? lightfield::ABuffer::stencil : lightfield::ABuffer::list,
-         .sort = lightfield::Sort::scan});
-    thesis.solve(std::vector<glm::vec3>(scene.bodies.size(), glm::vec3(0)));
-    return testing::texels(scene, of.size, thesis.irradiance(), {});
+         .thesis = {.abuffer = method == stencil ? lightfield::ABuffer::stencil : lightfield::ABuffer::list,
+                    .sort = lightfield::Sort::scan}});
+    thesis->settle();
+    return testing::texels(scene, of.size, thesis->irradiance(), {});
   }
 
   std::vector<Row> measured(const Case& of) {

@@ -76,8 +76,7 @@ TEST_F(Gpu, ABufferThatShadersDoNotSeeAllOfIsRefusedByName) {
 TEST_F(Gpu, AFramePutsBarriersBetweenDependentPasses) {
   const Buffer a(device(), "test/a", 4096, transfer), b(device(), "test/b", 4096, transfer);
   const Buffer out(device(), "test/out", 4096, transfer, Memory::host);
-  PassTimes times;
-  Frame frame(device(), times);
+  Frame frame(device());
   for (std::uint32_t round = 1; round <= 3; ++round) {  // write after write, read after write, write after read
     frame.clear("fill", a, round);
     frame.copy("copy", a, b);
@@ -86,50 +85,47 @@ TEST_F(Gpu, AFramePutsBarriersBetweenDependentPasses) {
   frame.to_host(out);
   frame.submit_and_wait();
   for (const auto word : out.as<std::uint32_t>()) ASSERT_EQ(word, 3u);
-  EXPECT_EQ(times.at("fill").calls, 3u);
-  EXPECT_EQ(times.at("copy").calls, 6u);
+  EXPECT_EQ(device().times().so_far().passes.at("fill").calls, 3u);
+  EXPECT_EQ(device().times().so_far().passes.at("copy").calls, 6u);
 }
 
 TEST_F(Gpu, ManyPassesInOneFrameAreAllTimed) {
   const Buffer buffer(device(), "test/buffer", 64, transfer);
-  PassTimes times;
-  Frame frame(device(), times);
+  Frame frame(device());
   for (int pass = 0; pass < 1500; ++pass) frame.clear("fill", buffer);  // more than one query pool holds
   frame.submit_and_wait();
-  EXPECT_EQ(times.at("fill").calls, 1500u);
-  EXPECT_GT(times.at("fill").gpu_ms, 0);
+  EXPECT_EQ(device().times().so_far().passes.at("fill").calls, 1500u);
+  EXPECT_GT(device().times().so_far().passes.at("fill").gpu_ms, 0);
 }
 
 // The host goes on while the device works; what follows in another frame waits on the device.
 TEST_F(Gpu, AFrameFollowsAnotherThatIsUnderWay) {
   const Buffer a(device(), "test/a", 1 << 20, transfer);
   const Buffer out(device(), "test/out", 1 << 20, transfer, Memory::host);
-  PassTimes times;
-  Frame first(device(), times);
+  Frame first(device());
   first.clear("fill", a, 7);
   first.submit();
-  Frame second(device(), times);
+  Frame second(device());
   second.copy("copy", a, out);
   second.to_host(out);
   second.submit_and_wait();
   for (const auto word : out.as<std::uint32_t>()) ASSERT_EQ(word, 7u);
-  EXPECT_EQ(times.count("fill"), 0u);
+  EXPECT_EQ(device().times().so_far().passes.count("fill"), 0u);
   first.wait();
-  EXPECT_EQ(times.at("fill").calls, 1u);
+  EXPECT_EQ(device().times().so_far().passes.at("fill").calls, 1u);
 }
 
 // As an exception would leave it.
 TEST_F(Gpu, AFrameThatNobodyWaitsForIsDoneWhenItGoes) {
   const Buffer out(device(), "test/out", 1 << 20, transfer, Memory::host);
-  PassTimes times;
   {
-    Frame frame(device(), times);
+    Frame frame(device());
     frame.clear("fill", out, 9);
     frame.to_host(out);
     frame.submit();
   }
   for (const auto word : out.as<std::uint32_t>()) ASSERT_EQ(word, 9u);
-  EXPECT_EQ(times.at("fill").calls, 1u);
+  EXPECT_EQ(device().times().so_far().passes.at("fill").calls, 1u);
 }
 
 TEST_F(Gpu, ImagesComeBackAsTheyWereSent) {
@@ -139,8 +135,7 @@ TEST_F(Gpu, ImagesComeBackAsTheyWereSent) {
   const Image image(device(), "test/image", {.width = 2, .height = 1}, vk::Format::eR8G8B8A8Unorm,
                     vk::ImageUsageFlagBits::eSampled | vk::ImageUsageFlagBits::eTransferSrc |
                         vk::ImageUsageFlagBits::eTransferDst);
-  PassTimes times;
-  Frame frame(device(), times);
+  Frame frame(device());
   frame.copy("upload", staging, image);
   frame.submit_and_wait();
   const auto back = download<std::array<std::uint8_t, 4>>(device(), image);

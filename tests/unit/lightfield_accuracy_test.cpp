@@ -7,8 +7,8 @@
 #include "device_for_tests.hpp"
 #include "form_factors.hpp"
 #include "known_scenes.hpp"
-#include "lichtveld/lightfield/thesis.hpp"
 #include "lichtveld/reference/error.hpp"
+#include "light_fields.hpp"
 #include "texels.hpp"
 
 namespace lichtveld::lightfield {
@@ -24,11 +24,11 @@ class LightFieldAccuracy : public WithDevice {
   };
 
   Baked bake(const scene::Scene& scene, Settings settings) {
-    settings.abuffer = ABuffer::list;
-    settings.sort = Sort::scan;
-    Thesis method(device(), scene, settings);
-    const auto solution = method.solve(std::vector<glm::vec3>(scene.bodies.size(), glm::vec3(0)));
-    return {solution, method.irradiance()};
+    settings.thesis.abuffer = ABuffer::list;
+    settings.thesis.sort = Sort::scan;
+    const auto method = make_light_field("thesis", device(), scene, settings);
+    const auto solution = method->settle();
+    return {solution, method->irradiance()};
   }
 };
 

@@ -1,6 +1,7 @@
 // The direction sets and their views.
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -13,10 +14,10 @@ namespace {
 
 using ::testing::HasSubstr;
 
-class DirectionSet : public ::testing::TestWithParam<std::uint32_t> {};
+class SetOfDirections : public ::testing::TestWithParam<std::uint32_t> {};
 
-TEST_P(DirectionSet, CoversTheSphereOnce) {
-  const auto set = directions(GetParam());
+TEST_P(SetOfDirections, CoversTheSphereOnce) {
+  const auto set = DirectionSet(GetParam());
   ASSERT_EQ(set.size(), GetParam());
   double sum = 0, smallest = 100, largest = 0;
   glm::dvec3 mean(0);
@@ -32,8 +33,8 @@ TEST_P(DirectionSet, CoversTheSphereOnce) {
   EXPECT_LT(largest / smallest, 6);  // the octahedron's faces are larger at their middles
 }
 
-TEST_P(DirectionSet, HasExactAntipodes) {
-  const auto set = directions(GetParam());
+TEST_P(SetOfDirections, HasExactAntipodes) {
+  const auto set = DirectionSet(GetParam());
   for (std::size_t index = 0; index < set.size() / 2; ++index) {
     EXPECT_EQ(set[index].along, -set[set.size() / 2 + index].along);
     EXPECT_EQ(set[index].solid_angle, set[set.size() / 2 + index].solid_angle);
@@ -41,20 +42,20 @@ TEST_P(DirectionSet, HasExactAntipodes) {
 }
 
 // E of a uniform sky is pi: the weights integrate the cosine. The error falls with the count.
-TEST_P(DirectionSet, IntegratesACosine) {
+TEST_P(SetOfDirections, IntegratesACosine) {
   for (const glm::vec3 normal : {glm::vec3(0, 0, 1), glm::normalize(glm::vec3(1, 2, 3)), glm::vec3(0, 1, 0)}) {
     double sum = 0;
-    for (const auto& direction : directions(GetParam()))
+    for (const auto& direction : DirectionSet(GetParam()))
       sum += std::max(0.0f, -glm::dot(normal, direction.along)) * direction.solid_angle;
     EXPECT_NEAR(sum, std::numbers::pi, 3.0 / std::sqrt(GetParam()));
   }
 }
 
 // Each half is a set of its own, so that either's answer is one.
-TEST_P(DirectionSet, HasTwoHalvesThatCoverTheSphereEach) {
+TEST_P(SetOfDirections, HasTwoHalvesThatCoverTheSphereEach) {
   std::array<std::uint32_t, 2> counts{};
   std::array<double, 2> sums{};
-  for (const auto& direction : directions(GetParam())) {
+  for (const auto& direction : DirectionSet(GetParam())) {
     ++counts.at(direction.half);
     sums.at(direction.half) += direction.solid_angle;
   }
@@ -65,8 +66,8 @@ TEST_P(DirectionSet, HasTwoHalvesThatCoverTheSphereEach) {
 }
 
 // The halves have the same cells in the same order: turned alike, they would have the same directions.
-TEST_P(DirectionSet, TurnsItsHalvesApart) {
-  const auto set = directions(GetParam());
+TEST_P(SetOfDirections, TurnsItsHalvesApart) {
+  const auto set = DirectionSet(GetParam());
   const std::size_t cells = GetParam() / 4;
   for (std::size_t cell = 0; cell < cells; ++cell) {
     EXPECT_EQ(set[cell].half, 0u);
@@ -78,10 +79,10 @@ TEST_P(DirectionSet, TurnsItsHalvesApart) {
   }
 }
 
-TEST_P(DirectionSet, DependsOnTheSeedAlone) {
-  const auto set = directions(GetParam(), Weights::solid_angle, 7),
-             again = directions(GetParam(), Weights::solid_angle, 7),
-             other = directions(GetParam(), Weights::solid_angle, 8);
+TEST_P(SetOfDirections, DependsOnTheSeedAlone) {
+  const auto set = DirectionSet(GetParam(), Weights::solid_angle, 7),
+             again = DirectionSet(GetParam(), Weights::solid_angle, 7),
+             other = DirectionSet(GetParam(), Weights::solid_angle, 8);
   for (std::size_t index = 0; index < set.size(); ++index) {
     EXPECT_EQ(set[index].along, again[index].along);
     EXPECT_EQ(set[index].roll, again[index].roll);
@@ -92,18 +93,43 @@ TEST_P(DirectionSet, DependsOnTheSeedAlone) {
   }
 }
 
-TEST_P(DirectionSet, EqualWeightsAreOneShareEach) {
-  for (const auto& direction : directions(GetParam(), Weights::equal))
+TEST_P(SetOfDirections, EqualWeightsAreOneShareEach) {
+  for (const auto& direction : DirectionSet(GetParam(), Weights::equal))
     EXPECT_FLOAT_EQ(direction.solid_angle, static_cast<float>(4 * std::numbers::pi / GetParam()));
 }
 
-INSTANTIATE_TEST_SUITE_P(All, DirectionSet,
+// Whoever takes a range of the pairs, or a part, or a half: together they are the set, each pair once.
+TEST_P(SetOfDirections, PairsStandHalfByHalfAndPartByPart) {
+  const DirectionSet set(GetParam());
+  const auto pairs = set.pairs();
+  ASSERT_EQ(pairs.size(), set.size() / 2);
+  EXPECT_EQ(set.half(0), (Range{0, set.size() / 4}));
+  EXPECT_EQ(set.half(1), (Range{set.size() / 4, set.size() / 2}));
+  std::uint32_t end = 0;
+  for (std::uint32_t part = 0; part < DirectionSet::parts; ++part) {
+    const auto range = set.part(part);
+    EXPECT_EQ(range.first, end);
+    EXPECT_EQ(range.first % 2, 0u) << "two links share a word of the table";
+    end = range.end;
+    for (auto pair = range.first; pair < range.end; ++pair)
+      EXPECT_EQ(pairs[pair].half, part < DirectionSet::parts / 2 ? 0u : 1u);
+  }
+  EXPECT_EQ(end, pairs.size());
+  double sum = 0;
+  for (const auto& pair : pairs) {
+    sum += 2 * pair.solid_angle;
+    EXPECT_TRUE(std::ranges::any_of(set, [&](const Direction& one) { return one.along == pair.along; }));
+  }
+  EXPECT_NEAR(sum, 4 * std::numbers::pi, 1e-4);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, SetOfDirections,
                          ::testing::ValuesIn(direction_counts().begin(), direction_counts().end()));
 
 TEST(Directions, OtherCountsAreRefusedWithTheList) {
   for (const std::uint32_t count : {0u, 1u, 25u, 385u, 8192u}) {
     try {
-      directions(count);
+      DirectionSet{count};
       FAIL() << count << " was taken";
     } catch (const std::invalid_argument& error) {
       EXPECT_THAT(error.what(), HasSubstr("8, 24, 32, 96, 128, 384, 512, 1536, 2048, 6144"));
@@ -115,7 +141,7 @@ TEST(PsfView, IsOrthonormalAndFitsTheSphereWhateverTheJitter) {
   const scene::Sphere sphere{{3, -2, 5}, 4};
   constexpr std::uint32_t pixels = 64;
   const float length = (1 - 1.0f / pixels) / sphere.radius;  // room for the jitter of half a pixel
-  for (const auto& direction : directions(96)) {
+  for (const auto& direction : DirectionSet(96)) {
     const auto view = psf_view(direction, sphere, pixels);
     const glm::vec3 right = glm::vec3(view.right) / length, up = glm::vec3(view.up) / length,
                     along = glm::vec3(view.along) / length;

@@ -5,27 +5,25 @@
 
 #include "device_for_tests.hpp"
 #include "known_scenes.hpp"
-#include "lichtveld/lightfield/links.hpp"
-#include "lichtveld/lightfield/thesis.hpp"
 #include "lichtveld/reference/error.hpp"
+#include "light_fields.hpp"
 
 namespace lichtveld::lightfield {
 namespace {
 
 using namespace lichtveld::testing;
-using Offsets = std::vector<glm::vec3>;
+using scene::Offsets;
 
 class LinksMethod : public WithDevice {
  protected:
   std::vector<glm::vec4> fresh(const scene::Scene& scene, const Settings& settings, const Offsets& offsets) {
-    Links links(device(), scene, settings);
-    links.solve(offsets);
-    return links.irradiance();
+    const auto links = make_light_field("links", device(), scene, settings);
+    settled(*links, offsets);
+    return links->irradiance();
   }
   std::vector<glm::vec4> fresh(const scene::Scene& scene, const Settings& settings) {
     return fresh(scene, settings, at_rest(scene));
   }
-  static Offsets at_rest(const scene::Scene& scene) { return Offsets(scene.bodies.size(), glm::vec3(0)); }
 };
 
 scene::Scene cornell() {
@@ -47,12 +45,12 @@ TEST_F(LinksMethod, FurnaceIsExact) {
 
 TEST_F(LinksMethod, FurnaceConvergesByItself) {
   const auto scene = furnace(0.8f);
-  Links links(device(), scene, {.size = 32, .psf = 96});
-  const auto solution = links.solve(at_rest(scene));
+  const auto links = make_light_field("links", device(), scene, {.size = 32, .psf = 96});
+  const auto solution = settled(*links, at_rest(scene));
   EXPECT_LT(solution.residual, 1e-3);
-  EXPECT_TRUE(solution.settled);
+  EXPECT_EQ(links->light(), Light::settled);
   EXPECT_EQ(solution.misses, 0u);
-  for (const auto& texel : links.irradiance())
+  for (const auto& texel : links->irradiance())
     if (texel.a > 0) {
       ASSERT_NEAR(texel.g / (pi / (1 - 0.8)), 1, 1e-3);  // the bound
     }
@@ -67,11 +65,10 @@ TEST_F(LinksMethod, AgreesWithTheThesis) {
                             .psf = 96,
                             .psf_size = 512,
                             .bounces = bounces,
-                            .abuffer = ABuffer::list,
-                            .sort = Sort::scan};
-    Thesis thesis(device(), scene, settings);
-    thesis.solve(at_rest(scene));
-    EXPECT_LT(rel_rmse(fresh(scene, settings), thesis.irradiance()), 0.03);
+                            .thesis = {.abuffer = ABuffer::list, .sort = Sort::scan}};
+    const auto thesis = make_light_field("thesis", device(), scene, settings);
+    settled(*thesis, at_rest(scene));
+    EXPECT_LT(rel_rmse(fresh(scene, settings), thesis->irradiance()), 0.03);
   }
 }
 
@@ -118,46 +115,46 @@ class Moves : public LinksMethod {
 };
 
 TEST_F(Moves, AMovedBodyIsLinkedAsAFreshStartWould) {
-  Links links(device(), scene_, settings_);
+  const auto links = make_light_field("links", device(), scene_, settings_);
   auto offsets = at_rest(scene_);
-  links.solve(offsets);
+  settled(*links, offsets);
   offsets[1] = {-0.5f, 0.4f, 0};
   offsets[2] = {0.3f, -0.2f, 0.1f};
-  links.solve(offsets);
+  settled(*links, offsets);
   const auto afresh = fresh(scene_, settings_, offsets);
-  EXPECT_LT(rel_rmse(links.irradiance(), afresh), 2e-3);
+  EXPECT_LT(rel_rmse(links->irradiance(), afresh), 2e-3);
   EXPECT_GT(rel_rmse(fresh(scene_, settings_), afresh), 0.02) << "the move must matter";
 }
 
 TEST_F(Moves, ManyMovesLeaveNoTrace) {
-  Links links(device(), scene_, settings_);
+  const auto links = make_light_field("links", device(), scene_, settings_);
   auto offsets = at_rest(scene_);
-  links.solve(offsets);
+  settled(*links, offsets);
   std::mt19937 random(1);
   for (int move = 0; move < 1000; ++move) {
     const auto body = 1 + random() % 2;
     nudge(offsets[body], random);
-    links.update(offsets, [](std::uint32_t) { return true; });
+    stepped(*links, offsets);
   }
-  links.solve(offsets);
-  EXPECT_LT(rel_rmse(links.irradiance(), fresh(scene_, settings_, offsets)), 2e-3);
-  const auto check = links.check(settings_.psf);
+  settled(*links, offsets);
+  EXPECT_LT(rel_rmse(links->irradiance(), fresh(scene_, settings_, offsets)), 2e-3);
+  const auto check = links->check(settings_.psf);
   EXPECT_GT(check.links, 0u);
   // The cubes also went through walls and through each other, as no player's can.
   EXPECT_LE(static_cast<double>(check.differing), 1e-4 * static_cast<double>(check.links));
-  links.solve(at_rest(scene_));
-  EXPECT_LT(rel_rmse(links.irradiance(), fresh(scene_, settings_)), 2e-3);
+  settled(*links, at_rest(scene_));
+  EXPECT_LT(rel_rmse(links->irradiance(), fresh(scene_, settings_)), 2e-3);
 }
 
 // Kept links are compared with what is found now, pair by pair, until all have been; a move starts anew.
 TEST_F(Moves, LinksAreLookedAtAgain) {
-  Links links(device(), scene_, settings_);
+  const auto links = make_light_field("links", device(), scene_, settings_);
   auto offsets = at_rest(scene_);
-  EXPECT_EQ(links.check(2).links, 0u) << "there are none yet";
-  const auto solution = links.solve(offsets);
+  EXPECT_EQ(links->check(2).links, 0u) << "there are none yet";
+  const auto solution = settled(*links, offsets);
   std::uint64_t misses = 0, looked_at = 0;
   for (std::uint32_t pair = 0; pair < settings_.psf / 2; pair += 2) {
-    const auto check = links.check(2);
+    const auto check = links->check(2);
     EXPECT_GT(check.links, 0u);
     EXPECT_EQ(check.differing, 0u) << "pair " << pair << ": nothing has moved";
     misses += check.misses;
@@ -165,13 +162,13 @@ TEST_F(Moves, LinksAreLookedAtAgain) {
   }
   EXPECT_EQ(misses, solution.misses);
   EXPECT_EQ(looked_at, std::uint64_t{solution.texels_valid} * settings_.psf / 2);
-  EXPECT_EQ(links.check(2).links, 0u);
+  EXPECT_EQ(links->check(2).links, 0u);
   offsets[1].x -= 0.3f;
-  links.solve(offsets);
-  const auto after = links.check(settings_.psf);
+  settled(*links, offsets);
+  const auto after = links->check(settings_.psf);
   EXPECT_EQ(after.links, looked_at);
   EXPECT_EQ(after.differing, 0u);
-  EXPECT_LT(rel_rmse(links.irradiance(), fresh(scene_, settings_, offsets)), 2e-3);
+  EXPECT_LT(rel_rmse(links->irradiance(), fresh(scene_, settings_, offsets)), 2e-3);
 }
 
 // Where nothing reflects there is nothing but direct light, of two lamps here: in a step it is there at once,
@@ -182,25 +179,25 @@ TEST_F(Moves, DirectLightFollowsAtOnce) {
   for (auto& material : black.materials) material.base_colour = glm::vec3(0);
   black.materials[black.surfaces.back().material].emission = {1, 2, 3};  // of a cube
   auto settings = settings_;
-  settings.step_bounces = 0.125f;
-  Links links(device(), black, settings);
+  settings.links.step_bounces = 0.125f;
+  const auto links = make_light_field("links", device(), black, settings);
   auto offsets = at_rest(black);
-  links.solve(offsets);
+  settled(*links, offsets);
   std::mt19937 random(2);
   for (int move = 0; move < 100; ++move) {
     for (std::size_t body = 1; body < offsets.size(); ++body)  // through each other, too
       nudge(offsets[body], random);
-    links.update(offsets, [](std::uint32_t) { return true; });
+    stepped(*links, offsets);
   }
   const auto afresh = fresh(black, settings, offsets);
   for (int part = 0; part < 8; ++part) {  // all that is left: by now each part knows which directions count
     offsets[1].x += 1e-6f;
-    links.update(offsets, [](std::uint32_t) { return true; });
+    stepped(*links, offsets);
   }
-  const auto kept = links.irradiance();
+  const auto kept = links->irradiance();
   EXPECT_LT(rel_rmse(kept, afresh), 1e-3);
-  links.solve(offsets);
-  EXPECT_LT(rel_rmse(kept, links.irradiance()), 1e-5) << "one link too much or too little would be 3e-4";
+  settled(*links, offsets);
+  EXPECT_LT(rel_rmse(kept, links->irradiance()), 1e-5) << "one link too much or too little would be 3e-4";
   EXPECT_GT(rel_rmse(fresh(black, settings), afresh), 0.02) << "the moves must matter";
 }
 
@@ -212,15 +209,15 @@ TEST_F(Moves, PartBouncesFollowAndArrive) {
   std::map<float, double> missing;
   for (const float bounces : {0.125f, 0.25f, 0.5f, 1.0f, 2.0f}) {
     auto settings = settings_;
-    settings.step_bounces = bounces;
-    Links links(device(), scene_, settings);
-    links.solve(at_rest(scene_));
-    const double before = rel_rmse(links.irradiance(), afresh);
-    EXPECT_EQ(links.update(offsets, [](std::uint32_t) { return true; }).bounces, bounces < 1 ? 1 : bounces);
-    missing[bounces] = rel_rmse(links.irradiance(), afresh);
+    settings.links.step_bounces = bounces;
+    const auto links = make_light_field("links", device(), scene_, settings);
+    settled(*links, at_rest(scene_));
+    const double before = rel_rmse(links->irradiance(), afresh);
+    EXPECT_EQ(stepped(*links, offsets).bounces, bounces < 1 ? 1 : bounces);
+    missing[bounces] = rel_rmse(links->irradiance(), afresh);
     EXPECT_LT(missing[bounces], 0.8 * before);
-    links.solve(offsets);
-    EXPECT_LT(rel_rmse(links.irradiance(), afresh), 2e-3);
+    settled(*links, offsets);
+    EXPECT_LT(rel_rmse(links->irradiance(), afresh), 2e-3);
   }
   EXPECT_GT(missing[0.125f], missing[0.25f]);
   EXPECT_LT(missing[0.125f], 2.2 * missing[1.0f]) << "beside what has moved all directions count";
@@ -231,30 +228,30 @@ TEST_F(Moves, PartBouncesFollowAndArrive) {
 
 // A body that leaves the room makes the scene's sphere, and so all rasters, larger.
 TEST_F(Moves, AMoveThatWidensTheSceneIsLinkedAfresh) {
-  Links links(device(), scene_, settings_);
+  const auto links = make_light_field("links", device(), scene_, settings_);
   auto offsets = at_rest(scene_);
-  links.solve(offsets);
+  settled(*links, offsets);
   offsets[1] = {0, 20, 0};
-  links.solve(offsets);
-  EXPECT_LT(rel_rmse(links.irradiance(), fresh(scene_, settings_, offsets)), 2e-3);
+  settled(*links, offsets);
+  EXPECT_LT(rel_rmse(links->irradiance(), fresh(scene_, settings_, offsets)), 2e-3);
 }
 
 TEST_F(Moves, LightSettlesAndThenNothingIsDone) {
-  Links links(device(), scene_, settings_);
+  const auto links = make_light_field("links", device(), scene_, settings_);
   auto offsets = at_rest(scene_);
-  links.solve(offsets);
-  EXPECT_EQ(links.update(offsets, [](std::uint32_t) { return false; }).bounces, 0u);
+  settled(*links, offsets);
+  EXPECT_EQ(stepped(*links, offsets, [](std::uint32_t) { return false; }).bounces, 0u);
   offsets[1].x -= 0.3f;
-  const auto first = links.update(offsets, [](std::uint32_t) { return true; });
-  EXPECT_EQ(first.bounces, 1u);
-  EXPECT_FALSE(first.settled);
+  EXPECT_EQ(stepped(*links, offsets).bounces, 1u);
+  EXPECT_EQ(links->light(), Light::rising);
   int maps = 0;
-  while (!links.update(offsets, [](std::uint32_t bounces) { return bounces >= 10; }).settled) ++maps;
+  for (; links->light() != Light::settled; ++maps)
+    stepped(*links, offsets, [](std::uint32_t bounces) { return bounces >= 10; });
   EXPECT_LE(maps, 3);
-  EXPECT_LT(rel_rmse(links.irradiance(), fresh(scene_, settings_, offsets)), 2e-3);
-  const auto calls = links.times().at("gather").calls;
-  EXPECT_EQ(links.update(offsets, [](std::uint32_t) { return false; }).bounces, 0u);
-  EXPECT_EQ(links.times().at("gather").calls, calls);
+  EXPECT_LT(rel_rmse(links->irradiance(), fresh(scene_, settings_, offsets)), 2e-3);
+  const auto calls = links->times().passes.at("gather").calls;
+  EXPECT_EQ(stepped(*links, offsets, [](std::uint32_t) { return false; }).bounces, 0u);
+  EXPECT_EQ(links->times().passes.at("gather").calls, calls);
 }
 
 TEST_F(LinksMethod, LayersBeyondTheLimitAreCountedAndLinkedAllTheSame) {
@@ -269,11 +266,11 @@ TEST_F(LinksMethod, LayersBeyondTheLimitAreCountedAndLinkedAllTheSame) {
   const auto scene = loaded(builder);
   const Settings roomy{.size = 64, .psf = 96, .bounces = 1, .layers = 16},
       tight{.size = 64, .psf = 96, .bounces = 1, .layers = 1};
-  Links links(device(), scene, tight);
-  const auto solution = links.solve(at_rest(scene));
+  const auto links = make_light_field("links", device(), scene, tight);
+  const auto solution = settled(*links, at_rest(scene));
   EXPECT_GE(solution.depth_layers_max, 11u);
   EXPECT_GT(solution.overflow_pixels, 0u);
-  EXPECT_EQ(rel_rmse(links.irradiance(), fresh(scene, roomy)), 0);
+  EXPECT_EQ(rel_rmse(links->irradiance(), fresh(scene, roomy)), 0);
 }
 
 TEST_F(LinksMethod, DoubleSidedLampsShineBothWaysAndNotOnThemselves) {
@@ -283,12 +280,13 @@ TEST_F(LinksMethod, DoubleSidedLampsShineBothWaysAndNotOnThemselves) {
            builder.material(glm::vec3(0), glm::vec3(10), double_sided));  // faces up
     square(builder, "floor", -1, false, chart_b, builder.material(glm::vec3(0.5)));
     const auto scene = loaded(builder);
-    const Settings settings{.size = 64, .psf = 384, .bounces = 1, .abuffer = ABuffer::list, .sort = Sort::scan};
-    Thesis thesis(device(), scene, settings);
-    thesis.solve(at_rest(scene));
+    const Settings settings{
+        .size = 64, .psf = 384, .bounces = 1, .thesis = {.abuffer = ABuffer::list, .sort = Sort::scan}};
+    const auto thesis = make_light_field("thesis", device(), scene, settings);
+    settled(*thesis, at_rest(scene));
     const auto found = fresh(scene, settings);
     if (double_sided) {
-      EXPECT_LT(rel_rmse(found, thesis.irradiance()), 0.05);
+      EXPECT_LT(rel_rmse(found, thesis->irradiance()), 0.05);
     }
     for (std::size_t texel = 0; texel < found.size(); ++texel)
       if (texel % 64 < 32) {
@@ -318,9 +316,9 @@ TEST_F(LinksMethod, WallsElsewhereDoNotMatter) {
 
 TEST_F(LinksMethod, NothingThatEmitsGivesBlack) {
   const auto scene = furnace(0.5f, 0);
-  Links links(device(), scene, {.size = 32, .psf = 24});
-  EXPECT_EQ(links.solve(at_rest(scene)).residual, 0);
-  for (const auto& texel : links.irradiance()) ASSERT_EQ(glm::vec3(texel), glm::vec3(0));
+  const auto links = make_light_field("links", device(), scene, {.size = 32, .psf = 24});
+  EXPECT_EQ(settled(*links, at_rest(scene)).residual, 0);
+  for (const auto& texel : links->irradiance()) ASSERT_EQ(glm::vec3(texel), glm::vec3(0));
 }
 
 TEST_F(LinksMethod, RadianceOfAnyMagnitudeScales) {

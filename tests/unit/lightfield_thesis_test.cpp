@@ -5,15 +5,17 @@
 #include <numbers>
 
 #include "device_for_tests.hpp"
-#include "lichtveld/lightfield/thesis.hpp"
 #include "lichtveld/reference/error.hpp"
+#include "light_fields.hpp"
 #include "scene_builder.hpp"
 
 namespace lichtveld::lightfield {
 namespace {
 
+using lichtveld::testing::at_rest;
 using lichtveld::testing::Chart;
 using lichtveld::testing::SceneBuilder;
+using lichtveld::testing::settled;
 using lichtveld::testing::TempFolder;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
@@ -68,9 +70,9 @@ class ThesisMethod : public lichtveld::testing::WithDevice {
  protected:
   Baked bake(const scene::Scene& scene, const Settings& settings, std::vector<glm::vec3> offsets = {}) {
     offsets.resize(scene.bodies.size(), glm::vec3(0));
-    Thesis method(device(), scene, settings);
-    const auto solution = method.solve(offsets);
-    return {solution, method.irradiance(), settings.size};
+    const auto method = make_light_field("thesis", device(), scene, settings);
+    const auto solution = settled(*method, offsets);
+    return {solution, method->irradiance(), settings.size};
   }
 };
 
@@ -80,7 +82,8 @@ double rel_rmse(const Baked& a, const Baked& b) {
 
 // Every wall sees pi * Le * (1 + rho + rho^2 + ..) : rows sum to one, so that nothing but a miss can spoil it.
 TEST_F(ThesisMethod, FurnaceIsExactWithTheList) {
-  const auto baked = bake(furnace(0.5f), {.size = 64, .psf = 96, .bounces = 3, .abuffer = ABuffer::list});
+  const auto baked =
+      bake(furnace(0.5f), {.size = 64, .psf = 96, .bounces = 3, .thesis = {.abuffer = ABuffer::list}});
   const double expected = pi * (1 + 0.5 + 0.25);
   for (const auto& texel : baked.irradiance) {
     if (texel.a == 0) continue;
@@ -91,7 +94,7 @@ TEST_F(ThesisMethod, FurnaceIsExactWithTheList) {
 }
 
 TEST_F(ThesisMethod, FurnaceConvergesByItself) {
-  const auto baked = bake(furnace(0.8f), {.size = 32, .psf = 24, .abuffer = ABuffer::list});
+  const auto baked = bake(furnace(0.8f), {.size = 32, .psf = 24, .thesis = {.abuffer = ABuffer::list}});
   EXPECT_NEAR(baked.mean({0, 0, 1, 1}) / (pi / (1 - 0.8)), 1, 1e-3);
   EXPECT_LT(baked.solution.residual, 1e-3);
   // The change shrinks by the albedo: 0.8^(n-1) * 0.2 / 0.2 < 0.001.
@@ -108,8 +111,8 @@ TEST_F(ThesisMethod, FurnaceIsNearWithTheStencil) {
 
 TEST_F(ThesisMethod, RadianceOfAnyMagnitudeScales) {
   for (const float emission : {1e-6f, 1e6f}) {
-    const auto baked =
-        bake(furnace(0.5f, emission), {.size = 32, .psf = 24, .bounces = 2, .abuffer = ABuffer::list});
+    const auto baked = bake(furnace(0.5f, emission),
+                            {.size = 32, .psf = 24, .bounces = 2, .thesis = {.abuffer = ABuffer::list}});
     EXPECT_NEAR(baked.mean({0, 0, 1, 1}) / (emission * pi * 1.5), 1, 1e-4) << emission;
   }
 }
@@ -122,8 +125,8 @@ TEST_F(ThesisMethod, ParallelSquaresHaveTheirFormFactor) {
   square(builder, "floor", -1, false, second_chart, builder.material(glm::vec3(0.5)));
   const auto scene = load(builder);
   for (const auto abuffer : {ABuffer::list, ABuffer::stencil}) {
-    const auto baked =
-        bake(scene, {.size = 128, .psf = 1536, .bounces = 1, .abuffer = abuffer, .sort = Sort::scan});
+    const auto baked = bake(
+        scene, {.size = 128, .psf = 1536, .bounces = 1, .thesis = {.abuffer = abuffer, .sort = Sort::scan}});
     EXPECT_NEAR(baked.mean(second_chart) / (pi * 0.199825 * 10), 1, 0.02);
     EXPECT_GT(baked.solution.misses,
               baked.solution.rays / 2);  // an open scene: most rays hit nothing, and that shows
@@ -136,7 +139,8 @@ TEST_F(ThesisMethod, OneSidedSurfacesAreSeenFromTheirFrontAlone) {
     square(builder, "lamp", 1, false, first_chart,
            builder.material(glm::vec3(0), glm::vec3(10), double_sided));  // faces up
     square(builder, "floor", -1, false, second_chart, builder.material(glm::vec3(0.5)));
-    const auto baked = bake(load(builder), {.size = 64, .psf = 384, .bounces = 1, .abuffer = ABuffer::list});
+    const auto baked =
+        bake(load(builder), {.size = 64, .psf = 384, .bounces = 1, .thesis = {.abuffer = ABuffer::list}});
     if (double_sided) {
       EXPECT_NEAR(baked.mean(second_chart) / (pi * 0.199825 * 10), 1, 0.05);
     } else {
@@ -152,7 +156,8 @@ TEST_F(ThesisMethod, ASurfaceInContactBlocksTheLight) {
   square(builder, "lamp", 1, true, first_chart, builder.material(glm::vec3(0), glm::vec3(10)));
   square(builder, "floor", -1, false, second_chart, builder.material(glm::vec3(0.5)));
   square(builder, "lid", -1, true, {0.05f, 0.55f, 0.45f, 0.95f}, builder.material(glm::vec3(0.5)));
-  const auto baked = bake(load(builder), {.size = 64, .psf = 384, .bounces = 1, .abuffer = ABuffer::list});
+  const auto baked =
+      bake(load(builder), {.size = 64, .psf = 384, .bounces = 1, .thesis = {.abuffer = ABuffer::list}});
   const float inset = 2.0f / 64;  // the rim sees past the lid's rasterised edge
   const double inside = baked.mean(
       {second_chart.u0 + inset, second_chart.v0 + inset, second_chart.u1 - inset, second_chart.v1 - inset});
@@ -175,8 +180,10 @@ TEST_P(Plates, LayersBeyondTheLimitAreCountedAndRenderedAllTheSame) {
            plate == plates - 1 ? bright : dark);
   }
   const auto scene = load(builder);
-  const auto roomy = bake(scene, {.size = 64, .psf = 96, .bounces = 1, .layers = 16, .abuffer = GetParam()});
-  const auto tight = bake(scene, {.size = 64, .psf = 96, .bounces = 1, .layers = 2, .abuffer = GetParam()});
+  const auto roomy =
+      bake(scene, {.size = 64, .psf = 96, .bounces = 1, .layers = 16, .thesis = {.abuffer = GetParam()}});
+  const auto tight =
+      bake(scene, {.size = 64, .psf = 96, .bounces = 1, .layers = 2, .thesis = {.abuffer = GetParam()}});
   EXPECT_EQ(roomy.solution.depth_layers_max, 11u);
   EXPECT_EQ(roomy.solution.overflow_pixels, 0u);
   EXPECT_EQ(tight.solution.depth_layers_max, 11u);
@@ -193,11 +200,11 @@ TEST_F(ThesisMethod, SortsAgreeAndABuffersNearlyDo) {
   const auto stencil = bake(cornell, settings);
   for (const auto sort : {Sort::bitonic, Sort::scan}) {
     auto other = settings;
-    other.sort = sort;
+    other.thesis.sort = sort;
     EXPECT_EQ(rel_rmse(bake(cornell, other), stencil), 0);
   }
   auto list = settings;
-  list.abuffer = ABuffer::list;
+  list.thesis.abuffer = ABuffer::list;
   const double difference = rel_rmse(stencil, bake(cornell, list));
   std::printf("stencil against list: rel_rmse %.4f\n", difference);
   EXPECT_LT(difference, 0.08);  // silhouettes, at 64 texels a side
@@ -205,15 +212,15 @@ TEST_F(ThesisMethod, SortsAgreeAndABuffersNearlyDo) {
 
 TEST_F(ThesisMethod, RepeatsBitForBitAndForgetsEarlierPlaces) {
   const auto cornell = scene::load(LICHTVELD_SOURCE_DIR "/assets/cornell.glb");
-  const Settings settings{.size = 64, .psf = 24, .bounces = 2, .abuffer = ABuffer::list};
+  const Settings settings{.size = 64, .psf = 24, .bounces = 2, .thesis = {.abuffer = ABuffer::list}};
   std::vector<glm::vec3> moved(cornell.bodies.size(), glm::vec3(0));
   moved[1] = {-0.5f, 0.4f, 0};
   const auto fresh = bake(cornell, settings, moved);
-  Thesis method(device(), cornell, settings);
-  method.solve(std::vector<glm::vec3>(cornell.bodies.size(), glm::vec3(0)));
-  const auto at_rest = method.irradiance();
-  method.solve(moved);
-  EXPECT_EQ(method.irradiance(), fresh.irradiance);
+  const auto method = make_light_field("thesis", device(), cornell, settings);
+  settled(*method, at_rest(cornell));
+  const auto at_rest = method->irradiance();
+  settled(*method, moved);
+  EXPECT_EQ(method->irradiance(), fresh.irradiance);
   EXPECT_NE(at_rest, fresh.irradiance);
 }
 
@@ -228,7 +235,7 @@ TEST_F(ThesisMethod, AShadowFollowsItsCube) {
   const float middle = (second_chart.u0 + second_chart.u1) / 2;
   const Chart left{second_chart.u0, second_chart.v0, middle, second_chart.v1},
       right{middle, second_chart.v0, second_chart.u1, second_chart.v1};
-  const Settings settings{.size = 64, .psf = 384, .bounces = 1, .abuffer = ABuffer::list};
+  const Settings settings{.size = 64, .psf = 384, .bounces = 1, .thesis = {.abuffer = ABuffer::list}};
   const auto to_left = bake(scene, settings, {glm::vec3(0), glm::vec3(-0.6f, 0, 0)});
   const auto to_right = bake(scene, settings, {glm::vec3(0), glm::vec3(0.6f, 0, 0)});
   EXPECT_LT(to_left.mean(left), 0.9 * to_left.mean(right));
@@ -247,7 +254,7 @@ TEST_F(ThesisMethod, SettingsOutOfRangeAreRefusedByName) {
   const auto scene = furnace(0.5f);
   const auto refusal = [&](const Settings& settings) -> std::string {
     try {
-      const Thesis method(device(), scene, settings);
+      const auto method = make_light_field("thesis", device(), scene, settings);
     } catch (const std::invalid_argument& error) {
       return error.what();
     }
@@ -267,9 +274,10 @@ TEST_F(ThesisMethod, SettingsOutOfRangeAreRefusedByName) {
 // channel.
 TEST_F(ThesisMethod, PresentsUniformLightAsOneGrey) {
   const auto scene = furnace(0.5f, 3);
-  Thesis method(device(), scene, {.size = 32, .psf = 24, .bounces = 2, .abuffer = ABuffer::list});
-  method.solve({glm::vec3(0)});
-  const auto shown = method.presented();
+  const auto method = make_light_field(
+      "thesis", device(), scene, {.size = 32, .psf = 24, .bounces = 2, .thesis = {.abuffer = ABuffer::list}});
+  settled(*method, {glm::vec3(0)});
+  const auto shown = method->shown().bytes;
   // scaled = key = 0.18, white = the same: L (1 + L / white^2) / (1 + L) = 0.18 (1 + 1 / 0.18) / 1.18 = 1.
   for (std::size_t texel = 0; texel < shown.size(); texel += 4) {
     ASSERT_EQ(shown[texel], shown[texel + 1]);

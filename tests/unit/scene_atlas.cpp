@@ -1,6 +1,7 @@
 // check_atlas(): which texels are valid, and who shares them.
 #include <gmock/gmock.h>
 
+#include "lichtveld/scene/atlas.hpp"
 #include "lichtveld/scene/scene.hpp"
 #include "scene_builder.hpp"
 

@@ -5,7 +5,8 @@
 #include <set>
 #include <sstream>
 
-#include "lichtveld/scene/collision.hpp"
+#include "lichtveld/scene/atlas.hpp"
+#include "lichtveld/scene/motion.hpp"
 #include "lichtveld/scene/scene.hpp"
 #include "scene_builder.hpp"
 

@@ -1,6 +1,7 @@
 // What load() makes of sound files.
 #include <gmock/gmock.h>
 
+#include "lichtveld/scene/atlas.hpp"
 #include "lichtveld/scene/scene.hpp"
 #include "scene_builder.hpp"
 

@@ -44,7 +44,7 @@ TEST_F(RoomTest, FloodOfMovesIsLimitedAndHarmsNobody) {
   const auto start = std::chrono::steady_clock::now();
   constexpr std::uint64_t sent = 3000;
   for (std::uint64_t i = 0; i < sent; ++i) flooding.channel().send(std::string(i % 2 ? "left" : "right"));
-  server->publish(map_bytes(100'000, 1), rest);
+  server->publish({.bytes = map_bytes(100'000, 1), .places = rest});
   EXPECT_TRUE(good.wait_maps(1)) << "others go on";
   const auto total = [&] {
     const auto s = server->statistics();
@@ -158,7 +158,7 @@ TEST_F(RoomTest, SessionsGoOnWhileSignalingIsAway) {
   client.forget_relay();
   relay.reset();
   ASSERT_TRUE(eventually([&] { return !server->statistics().signaling_connected; }));
-  server->publish(map_bytes(50'000, 1), rest);
+  server->publish({.bytes = map_bytes(50'000, 1), .places = rest});
   EXPECT_TRUE(client.wait_maps(1));
   client.channel().send(std::string("up"));
   EXPECT_TRUE(eventually([&] { return server->statistics().moves == 1; }));
@@ -209,7 +209,7 @@ TEST_F(RoomTest, NoSignalingAtAllIsNoError) {
   auto early = options();
   relay.reset();
   server = std::make_unique<Server>(early);
-  server->publish(map_bytes(10, 1), rest);
+  server->publish({.bytes = map_bytes(10, 1), .places = rest});
   std::this_thread::sleep_for(100ms);
   relay = std::make_unique<Relay>(port);
   EXPECT_TRUE(eventually([&] { return server->statistics().signaling_connected; }));
@@ -237,8 +237,8 @@ TEST_F(RoomTest, SenselessOptionsAreNamed) {
   EXPECT_THAT(rejected([](auto& o) { o.bind_address = "nowhere"; }), HasSubstr("nowhere"));
   EXPECT_THAT(rejected([](auto& o) { o.mover = nullptr; }), HasSubstr("mover"));
   start();
-  EXPECT_THROW(server->publish({}, rest), std::invalid_argument);
-  EXPECT_THROW(server->publish({1}, {{NAN, 0}}), std::invalid_argument);
+  EXPECT_THROW(server->publish({.bytes = {}, .places = rest}), std::invalid_argument);
+  EXPECT_THROW(server->publish({.bytes = {1}, .places = {{NAN, 0}}}), std::invalid_argument);
 }
 
 }  // namespace

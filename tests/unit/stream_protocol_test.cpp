@@ -34,7 +34,7 @@ TEST(Protocol, MapIsCutIntoChunksThatGiveItBack) {
 }
 
 TEST(Protocol, FixedTexts) {
-  EXPECT_EQ(map_complete, "PNG_TRANSFER_COMPLETE");
+  EXPECT_EQ(map_complete(MapFormat::png), "PNG_TRANSFER_COMPLETE");
   EXPECT_EQ(channel_label, "lichtveld");
 }
 

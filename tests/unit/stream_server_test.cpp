@@ -15,7 +15,7 @@ const auto* const cleanup = testing::AddGlobalTestEnvironment(new Cleanup);
 TEST_F(RoomTest, JoinerGetsPlacesAtOnceAndTheWholeMap) {
   start();
   const auto first = map_bytes(100'001, 1), second = map_bytes(16 * 1024, 2);
-  server->publish(first, rest);
+  server->publish({.bytes = first, .places = rest});
   Client client(*relay);
   ASSERT_TRUE(client.wait_maps(1));
   EXPECT_EQ(client.state().maps[0], as_binary(first));
@@ -23,7 +23,7 @@ TEST_F(RoomTest, JoinerGetsPlacesAtOnceAndTheWholeMap) {
   EXPECT_GE(client.state().texts_before_first_chunk, 1u) << "the places come before the map";
   EXPECT_EQ(relay->scene(), std::string(64, 'a'));
 
-  server->publish(second, {{0.125f, -1}, {0.5f, 0.25f}});
+  server->publish({.bytes = second, .places = {{0.125f, -1}, {0.5f, 0.25f}}});
   ASSERT_TRUE(client.wait_maps(2));
   EXPECT_EQ(client.state().maps[1], as_binary(second));
   EXPECT_EQ(client.state().texts.back(), "0.125!-1/0.5!0.25") << "the places that this map shows";
@@ -47,7 +47,7 @@ TEST_F(RoomTest, WorkIsReportedWhenThereIsMoreOfIt) {
   std::this_thread::sleep_for(1100ms);
   EXPECT_EQ(relay->reports, reports) << "nothing has been done since";
 
-  server->publish(map_bytes(1000, 1), rest);
+  server->publish({.bytes = map_bytes(1000, 1), .places = rest});
   ASSERT_TRUE(client.wait_maps(1));
   ASSERT_TRUE(eventually([&] { return relay->work().at("stages").at(1).at("runs") == 1; }));
   const auto work = relay->work();
@@ -112,7 +112,7 @@ TEST_F(RoomTest, SlowClientSkipsToTheNewestAndNobodyElseNotices) {
   slow.link().cut = true;
   constexpr std::size_t count = 12;
   for (unsigned i = 1; i <= count; ++i) {
-    server->publish(map_bytes(200'000, i), rest);
+    server->publish({.bytes = map_bytes(200'000, i), .places = rest});
     ASSERT_TRUE(fast.wait_maps(i)) << "map " << i;
   }
   slow.link().cut = false;
@@ -194,7 +194,7 @@ TEST_F(RoomTest, ServerWithConnectionsEndsAtOnce) {
   start();
   Client client(*relay);
   ASSERT_TRUE(client.wait_open());
-  for (unsigned i = 1; i <= 20; ++i) server->publish(map_bytes(300'000, i), rest);
+  for (unsigned i = 1; i <= 20; ++i) server->publish({.bytes = map_bytes(300'000, i), .places = rest});
   const auto start = std::chrono::steady_clock::now();
   server.reset();
   EXPECT_LT(std::chrono::steady_clock::now() - start, 1s);

@@ -19,38 +19,29 @@ double bound_on_missing(double change, float albedo_max, double mean) {
   return change / (1 - albedo_max) / mean;
 }
 
-Convergence::Convergence(const gpu::Device& device, const LightMap& map)
-    : before_(std::size_t{map.size} * map.size, glm::vec4(0)) {
-  const auto positions = gpu::download<glm::vec4>(device, map.position);
-  const auto albedos = gpu::download<glm::vec4>(device, map.albedo);
-  for (std::size_t texel = 0; texel < positions.size(); ++texel) {
-    if (positions[texel].a == 0) continue;
-    ++texels_valid_;
-    albedo_max_ = std::max({albedo_max_, albedos[texel].r, albedos[texel].g, albedos[texel].b});
-  }
-}
+Convergence::Convergence(const TexelRecords& records)
+    : before_(std::size_t{records.size()} * records.size(), glm::vec4(0)),
+      albedo_max_(records.highest_albedo()) {}
 
-double Convergence::measure(const gpu::Device& device, const LightMap& map) {
-  auto now = gpu::download<glm::vec4>(device, map.total_irradiance);
-  double change = 0, sum = 0;
-  for (std::size_t texel = 0; texel < now.size(); ++texel) {
-    if (now[texel].a == 0) continue;
+double Convergence::measure(std::vector<glm::vec4>&& irradiance) {
+  double change = 0, sum = 0, texels = 0;
+  for (std::size_t texel = 0; texel < irradiance.size(); ++texel) {
+    if (irradiance[texel].a == 0) continue;
+    ++texels;
     for (int channel = 0; channel < 3; ++channel) {
-      change = std::max(change, std::abs(double{now[texel][channel]} - before_[texel][channel]));
-      sum += now[texel][channel];
+      change = std::max(change, std::abs(double{irradiance[texel][channel]} - before_[texel][channel]));
+      sum += irradiance[texel][channel];
     }
   }
-  before_ = std::move(now);
-  return bound_on_missing(change, albedo_max_, sum / (3.0 * texels_valid_));
+  before_ = std::move(irradiance);
+  return bound_on_missing(change, albedo_max_, sum / (3 * texels));
 }
 
-double split_half_error(const gpu::Device& device, const LightMap& map) {
-  const auto total = gpu::download<glm::vec4>(device, map.total_irradiance);
-  const auto difference = gpu::download<glm::vec4>(device, map.half_difference);
+double split_half_error(std::span<const glm::vec4> irradiance, std::span<const glm::vec4> half_difference) {
   double squares = 0, sum = 0, values = 0;
-  for (std::size_t texel = 0; texel < total.size(); ++texel) {
-    if (total[texel].a == 0) continue;
-    const glm::dvec3 apart(difference[texel]), light(total[texel]);
+  for (std::size_t texel = 0; texel < irradiance.size(); ++texel) {
+    if (irradiance[texel].a == 0) continue;
+    const glm::dvec3 apart(half_difference[texel]), light(irradiance[texel]);
     squares += glm::dot(apart, apart);
     sum += light.r + light.g + light.b;
     values += 3;

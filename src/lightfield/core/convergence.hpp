@@ -1,8 +1,13 @@
-// How much light a solve may still miss: a bound from the last bounce's change.
+// How much light a solve may still miss: a bound from the last bounce's change. And how far its answer may be
+// off.
 #pragma once
 
-#include "lichtveld/lightfield/settings.hpp"
-#include "passes/light_map.hpp"
+#include <glm/glm.hpp>
+#include <span>
+#include <vector>
+
+#include "core/texel_records.hpp"
+#include "lichtveld/lightfield/light_field.hpp"
 
 namespace lichtveld::lightfield {
 
@@ -19,24 +24,21 @@ void warn_of_no_bound(const Solution& solution);
 // change / (1 - max albedo): that bound as a share of E's mean, infinite if an albedo is 1.
 double bound_on_missing(double change, float albedo_max, double mean);
 
+// That bound from whole light maps, of texels with a > 0, all channels.
 class Convergence {
  public:
-  // Reads the largest albedo and the valid texels of a map whose geometry_texture is drawn.
-  Convergence(const gpu::Device& device, const LightMap& map);
+  explicit Convergence(const TexelRecords& records);
 
-  std::uint32_t texels_valid() const { return texels_valid_; }
-
-  // After a bounce: that bound, over the valid texels and channels.
-  double measure(const gpu::Device& device, const LightMap& map);
+  // After a bounce that led to this E [W m^-2]; before the first it was 0.
+  double measure(std::vector<glm::vec4>&& irradiance);
 
  private:
   std::vector<glm::vec4> before_;
-  std::uint32_t texels_valid_ = 0;
-  float albedo_max_ = 0;
+  float albedo_max_;
 };
 
-// Solution::error_estimate of the last bounce: the root mean square of half_difference over the mean of E, over
-// the valid texels and channels.
-double split_half_error(const gpu::Device& device, const LightMap& map);
+// Solution::error_estimate: the root mean square of what the halves of the directions differ by from their
+// mean, over the mean of E, over texels with a > 0 in `irradiance`, all channels.
+double split_half_error(std::span<const glm::vec4> irradiance, std::span<const glm::vec4> half_difference);
 
 }  // namespace lichtveld::lightfield

@@ -9,6 +9,8 @@
 #include <random>
 #include <stdexcept>
 
+#include "shared.h"
+
 namespace lichtveld::lightfield {
 
 namespace {
@@ -123,30 +125,46 @@ std::string direction_counts_text() {
   return text;
 }
 
-std::vector<Direction> directions(std::uint32_t count, Weights weights, std::uint64_t seed) {
+DirectionSet::DirectionSet(std::uint32_t count, Weights weights, std::uint64_t seed) {
   if (std::find(counts.begin(), counts.end(), count) == counts.end())
     throw std::invalid_argument(std::to_string(count) + " PSFs: the direction sets have " +
                                 direction_counts_text());
   const auto cells = half_set(count);
-  std::vector<Direction> found;
   Random random(seed);
   for (std::uint32_t half = 0; half < 2; ++half) {
     const glm::dquat rotation = random_rotation(random);
     for (const Cell& cell : cells) {
       const double share = weights == Weights::equal ? 4 * pi / count : cell.solid_angle / 2;
       const double roll = 2 * pi * random.next(), x = random.next() - 0.5, y = random.next() - 0.5;
-      found.push_back({.along = glm::vec3(rotation * cell.middle),
-                       .solid_angle = static_cast<float>(share),
-                       .half = half,
-                       .roll = static_cast<float>(roll),
-                       .jitter = {x, y}});
+      all_.push_back({.along = glm::vec3(rotation * cell.middle),
+                      .solid_angle = static_cast<float>(share),
+                      .half = half,
+                      .roll = static_cast<float>(roll),
+                      .jitter = {x, y}});
     }
   }
+  // Of either half the parts are interleaved.
+  constexpr std::size_t parts_of_half = parts / 2;
+  const std::size_t half = count / 4;
+  for (const std::size_t first : {std::size_t{0}, half})
+    for (std::size_t part = 0; part < parts_of_half; ++part)
+      for (auto index = part; index < half; index += parts_of_half) pairs_.push_back(all_[first + index]);
   for (std::size_t index = 0; index < count / 2; ++index) {
-    found.push_back(found[index]);
-    found.back().along = -found.back().along;
+    all_.push_back(all_[index]);
+    all_.back().along = -all_.back().along;
   }
-  return found;
 }
+
+Range DirectionSet::half(std::uint32_t index) const {
+  const auto each = size() / 4;
+  return {index * each, (index + 1) * each};
+}
+
+Range DirectionSet::part(std::uint32_t index) const {
+  const auto pairs = static_cast<std::uint32_t>(pairs_.size());
+  return {shaders::first_pair_of_part(pairs, index), shaders::first_pair_of_part(pairs, index + 1)};
+}
+
+static_assert(DirectionSet::parts == shaders::PARTS);
 
 }  // namespace lichtveld::lightfield

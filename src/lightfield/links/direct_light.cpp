@@ -15,9 +15,13 @@ using gpu::Kind;
 constexpr float most_weight = 2 * std::numbers::pi_v<float>;
 constexpr float most_sum = 0x1p31f;
 
-gpu::Buffer scaled(const gpu::Device& device, const std::vector<glm::vec3>& lamps, float scale) {
+float scale_for(const Lamps& lamps) {
+  return lamps.brightest() > 0 ? most_sum / (most_weight * lamps.brightest()) : 1;
+}
+
+gpu::Buffer scaled(const gpu::Device& device, const Lamps& lamps, float scale) {
   std::vector<glm::vec3> light;
-  for (const auto& lamp : lamps) light.push_back(scale * lamp);
+  for (const auto& lamp : lamps.emission()) light.push_back(scale * lamp);
   return gpu::upload<glm::vec3>(device, "lightfield/lamps", light, vk::BufferUsageFlagBits::eStorageBuffer);
 }
 
@@ -29,12 +33,11 @@ DirectLight::DirectLight(const gpu::Device& device, const LinkTable& table)
                       Kind::storage_buffer, Kind::storage_buffer},
             .push_bytes = sizeof(shaders::DirectConstants),
             .specialisation = {table.bits}}),
-      scale_(table.brightest > 0 ? most_sum / (most_weight * table.brightest) : 1),
-      lamps_(scaled(device, table.lamps, scale_)),
+      scale_(scale_for(table.records.lamps())),
+      lamps_(scaled(device, table.records.lamps(), scale_)),
       sums_(device, "lightfield/direct_light", std::uint64_t{table.texels} * 2 * sizeof(glm::uvec3),
             vk::BufferUsageFlagBits::eStorageBuffer | vk::BufferUsageFlagBits::eTransferDst) {
-  gpu::PassTimes times;
-  gpu::Frame frame(device, times);
+  gpu::Frame frame(device);
   frame.clear("direct_light", sums_);
   frame.submit_and_wait();
 }
@@ -49,7 +52,7 @@ void DirectLight::sum(gpu::Frame& frame, const LightMap& map, const LinkTable& t
                   shaders::DirectConstants{.texels = table.texels,
                                            .first_pair = chunk.first_pair,
                                            .pairs = chunk.pairs,
-                                           .lamps = table.lamp_count(),
+                                           .lamps = table.records.lamps().count(),
                                            .half_pairs = table.pairs / 2},
                   table.groups(), 1);
 }

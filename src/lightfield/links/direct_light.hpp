@@ -4,7 +4,9 @@
 // the links as they are.
 #pragma once
 
+#include "lichtveld/gpu/frame.hpp"
 #include "links/link_table.hpp"
+#include "passes/light_map.hpp"
 
 namespace lichtveld::lightfield {
 

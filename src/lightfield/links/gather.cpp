@@ -49,8 +49,9 @@ Gather::Gather(const gpu::Device& device, const LinkTable& table)
       change_(device, "gather", link_change_comp,
               {.kinds = std::vector(2, Kind::storage_buffer), .push_bytes = sizeof(shaders::ChangeConstants)}),
       radiance_(dark(device, table)),
-      sums_(storage(device, "lightfield/sums", shaders::PARTS * std::uint64_t{table.texels} * sizeof(glm::vec4),
-                    gpu::Memory::device, vectors)),
+      sums_(storage(device, "lightfield/sums",
+                    DirectionSet::parts * std::uint64_t{table.texels} * sizeof(glm::vec4), gpu::Memory::device,
+                    vectors)),
       groups_(storage(device, "lightfield/gather_groups", sizeof(std::uint32_t), gpu::Memory::host)),
       changed_(storage(device, "lightfield/changed", table.texels * sizeof(glm::vec2))),
       changes_(storage(device, "lightfield/changes", change_groups * sizeof(glm::vec2), gpu::Memory::host)) {}
@@ -62,7 +63,7 @@ void Gather::start(gpu::Frame& frame, const KeptLinks& links) const {
 }
 
 void Gather::bounce(gpu::Frame& frame, const KeptLinks& links) const {
-  gather(frame, links, 0, shaders::PARTS);
+  gather(frame, links, 0, DirectionSet::parts);
   end(frame, links, true);
 }
 
@@ -70,8 +71,8 @@ void Gather::part_bounce(gpu::Frame& frame, const KeptLinks& links, std::uint32_
   const auto& beside = links.beside();
   gpu::put<std::uint32_t>(device_, groups_, beside);
   gather(frame, links, first, parts);
-  if (!beside.empty() && parts < shaders::PARTS)
-    gather(frame, links, first + parts, shaders::PARTS - parts, static_cast<std::uint32_t>(beside.size()));
+  if (!beside.empty() && parts < DirectionSet::parts)
+    gather(frame, links, first + parts, DirectionSet::parts - parts, static_cast<std::uint32_t>(beside.size()));
   end(frame, links, false);
 }
 
@@ -102,7 +103,7 @@ void Gather::end(gpu::Frame& frame, const KeptLinks& links, bool counted) const 
                  gpu::reads(map.albedo), gpu::reads(map.emission), gpu::writes(map.total_irradiance),
                  gpu::writes(map.half_difference), gpu::writes(radiance_), gpu::writes(changed_)},
                 shaders::BounceConstants{.texels = table.texels,
-                                         .lamps = table.lamp_count(),
+                                         .lamps = table.records.lamps().count(),
                                          .direct_scale = direct.scale(),
                                          .counted = counted ? 1u : 0u},
                 table.groups(), 1);

@@ -19,8 +19,8 @@ class Gather {
   void start(gpu::Frame& frame, const KeptLinks& links) const;
   // Over all directions.
   void bounce(gpu::Frame& frame, const KeptLinks& links) const;
-  // Over `parts` parts of the directions (of shaders::PARTS), from `first` on and round; of the others the sums
-  // of before count on, but beside what has moved, where most of the links are new.
+  // Over `parts` parts of the directions (of DirectionSet::parts), from `first` on and round; of the others the
+  // sums of before count on, but beside what has moved, where most of the links are new.
   void part_bounce(gpu::Frame& frame, const KeptLinks& links, std::uint32_t first, std::uint32_t parts);
 
   // Of a bounce over all directions that the frame has waited for.

@@ -32,20 +32,8 @@ scene::Box grown(const scene::Box& box, float share) {
   return {box.min - by, box.max + by};
 }
 
-// The direction of each pair. Of either half the parts are interleaved, so that each spans the sphere.
-std::vector<Direction> pair_directions(const Settings& settings) {
-  const auto all = directions(settings.psf, settings.weights, settings.seed);
-  const std::size_t half = all.size() / 4;
-  std::vector<Direction> pairs;
-  const std::size_t parts = shaders::PARTS / 2;
-  for (const std::size_t first : {std::size_t{0}, half})
-    for (std::size_t part = 0; part < parts; ++part)
-      for (auto index = part; index < half; index += parts) pairs.push_back(all[first + index]);
-  return pairs;
-}
-
 // What shaders fetch at once of each pair.
-gpu::Buffer upload_directions(const gpu::Device& device, const std::vector<Direction>& pairs) {
+gpu::Buffer upload_directions(const gpu::Device& device, std::span<const Direction> pairs) {
   std::vector<glm::vec4> directions;
   for (const auto& pair : pairs) directions.emplace_back(pair.along, pair.solid_angle);
   return gpu::upload<glm::vec4>(device, "lightfield/pair_directions", directions,
@@ -54,109 +42,93 @@ gpu::Buffer upload_directions(const gpu::Device& device, const std::vector<Direc
 
 }  // namespace
 
-KeptLinks::KeptLinks(const gpu::Device& device, const scene::Scene& scene, const Settings& settings,
-                     gpu::PassTimes& times)
+KeptLinks::KeptLinks(const gpu::Device& device, const scene::Scene& scene, const Settings& settings)
     : device_(device),
       settings_(settings),
-      times_(times),
-      pairs_(pair_directions(settings)),
+      records_(device.times().time("texel_records", [&] { return TexelRecords(scene, settings.size); })),
+      set_(settings.psf, settings.weights, settings.seed),
       geometry_(device, scene),
-      map_(device, settings.size),
+      map_(device, records_),
       geometry_texture_(device),
       counters_(device, "lightfield/counters", sizeof(shaders::Counters),
                 vk::BufferUsageFlagBits::eStorageBuffer, gpu::Memory::host),
-      directions_(upload_directions(device, pairs_)),
+      directions_(upload_directions(device, set_.pairs())),
+      table_(device, records_, static_cast<std::uint32_t>(set_.pairs().size())),
+      direct_(device, table_),
       capacity_(capacity_for(settings.layers)) {
-  gpu::Frame frame(device, times);
-  place(frame, std::vector(scene.bodies.size(), glm::vec3(0)));
-  geometry_texture_.find_sources(frame, map_);
-  frame.submit_and_wait();
-  table_ = std::make_unique<LinkTable>(device, scene, map_, static_cast<std::uint32_t>(pairs_.size()));
-  direct_ = std::make_unique<DirectLight>(device, *table_);
   layered();
 }
 
-void KeptLinks::place(gpu::Frame& frame, const std::vector<glm::vec3>& to) {
-  geometry_.place(to, settings_.raster());
-  if (offsets_.empty()) frame.clear("route_links", map_.cover, {});
-  geometry_texture_.record(frame, geometry_, map_);
-  if (layered_) layered_->placed = false;
-}
-
-void KeptLinks::link(const std::vector<glm::vec3>& to, Solution& solution) {
-  if (to == offsets_) return;
+void KeptLinks::link(const scene::Offsets& to, const Moves& moves, Solution& solution) {
   const auto sphere_before = geometry_.sphere;
-  gpu::Frame placing(device_, times_);
-  place(placing, to);
-  placing.submit();  // while it is drawn, the host looks up what to route
+  gpu::Frame placing(device_);
+  geometry_.place(to, settings_.raster());
+  if (moves.all) placing.clear("route_links", map_.cover, {});
+  geometry_texture_.record(placing, geometry_, map_, moves);
+  layered().received = false;
+  placing.submit();                                       // while it is drawn, the host looks up what to route
+  done_ = {.linked_at = to, .direct_summed = moves.all};  // the first links of all sum it up
+  const gpu::TimeLedger::Stage stage(device_.times(), "route_links");
+  const auto tiles = table_.boxes(to);
   // All views are scaled by the scene's sphere; if that changes, so does every raster.
-  const bool all = offsets_.empty() || !same(geometry_.sphere, sphere_before);
-  const auto before = std::exchange(offsets_, {});  // should this fail half-way, nothing is known
-  summed_ = before.empty();                         // the first links of all sum it up
-  const auto tiles = table_->boxes(to);
-  if (all) {
-    for (std::uint32_t group = 0; group < table_->groups(); ++group) cover_unknown_.insert(group);
+  if (moves.all || !same(geometry_.sphere, sphere_before)) {
+    for (std::uint32_t group = 0; group < table_.groups(); ++group) cover_unknown_.insert(group);
     beside_ = {cover_unknown_.begin(), cover_unknown_.end()};
-    solution.rays = std::uint64_t{table_->texels} * pairs_.size();
+    solution.rays = std::uint64_t{table_.texels} * table_.pairs;
     solution.misses = solution.rays_unknown = solution.overflow_pixels = 0;
-    solution.texels_valid = table_->texels;
+    solution.texels_valid = table_.texels;
     route(whole_rasters(), tiles, solution);
   } else {
-    auto boxes = moved_boxes(before, to);
+    auto boxes = moved_boxes(moves);
     cover_unknown_.merge(groups_beside(boxes, contact(geometry_.sphere, settings_.raster()), tiles));
     for (auto& box : boxes) box = grown(box, beside_share);
     const auto beside = groups_beside(boxes, 0, tiles);
     beside_ = {beside.begin(), beside.end()};
     // One after the other: where their ways cross, the same links change for each.
-    for (std::size_t body = 1; body < to.size(); ++body)
-      if (to[body] != before[body]) route(changed_parts(body, before[body], to[body]), tiles, solution);
+    for (const auto& move : moves.bodies) route(changed_parts(move), tiles, solution);
   }
   placing.wait();
-  checked_ = 0;
-  offsets_ = to;
 }
 
 void KeptLinks::sum_direct() {
-  if (std::exchange(summed_, true)) return;
-  gpu::Frame frame(device_, times_);
-  direct_->sum(frame, map_, *table_, directions_);
+  if (std::exchange(done_.direct_summed, true)) return;
+  gpu::Frame frame(device_);
+  direct_.sum(frame, map_, table_, directions_);
   frame.submit_and_wait();
 }
 
 KeptLinks::Layered& KeptLinks::layered() {
-  if (!layered_) layered_ = std::make_unique<Layered>(device_, settings_, *table_, capacity_);
+  if (!layered_) layered_ = std::make_unique<Layered>(device_, settings_, table_, capacity_);
   return *layered_;
 }
 
 Part KeptLinks::whole_raster(std::uint32_t pair) const {
   const auto pixels = settings_.raster();
-  return whole(psf_view(pairs_[pair], geometry_.sphere, pixels), pair, pixels);
+  return whole(psf_view(set_.pairs()[pair], geometry_.sphere, pixels), pair, pixels);
 }
 
 std::vector<Part> KeptLinks::whole_rasters() const {
   std::vector<Part> parts;
-  for (std::uint32_t pair = 0; pair < pairs_.size(); ++pair) parts.push_back(whole_raster(pair));
+  for (std::uint32_t pair = 0; pair < table_.pairs; ++pair) parts.push_back(whole_raster(pair));
   return parts;
 }
 
 // Of every pair's raster.
-std::vector<Part> KeptLinks::changed_parts(std::size_t body, const glm::vec3& from, const glm::vec3& to) const {
+std::vector<Part> KeptLinks::changed_parts(const Moves::Move& move) const {
   const auto pixels = settings_.raster();
   std::vector<Part> parts;
-  for (std::uint32_t pair = 0; pair < pairs_.size(); ++pair)
-    parts.push_back(changed(psf_view(pairs_[pair], geometry_.sphere, pixels), pair, pixels,
-                            moved(geometry_.scene.bodies[body].box, from), to - from));
+  for (std::uint32_t pair = 0; pair < table_.pairs; ++pair)
+    parts.push_back(changed(psf_view(set_.pairs()[pair], geometry_.sphere, pixels), pair, pixels,
+                            moved(geometry_.scene.bodies[move.body].box, move.from), move.to - move.from));
   return parts;
 }
 
 // Where something lay on texels or may lie on them now: where the bodies that move were, and where they are.
-std::vector<scene::Box> KeptLinks::moved_boxes(const std::vector<glm::vec3>& from,
-                                               const std::vector<glm::vec3>& to) const {
+std::vector<scene::Box> KeptLinks::moved_boxes(const Moves& moves) const {
   std::vector<scene::Box> boxes;
-  for (std::size_t body = 1; body < to.size(); ++body)
-    if (to[body] != from[body])
-      for (const auto& at : {from[body], to[body]})
-        boxes.push_back(moved(geometry_.scene.bodies[body].box, at));
+  for (const auto& move : moves.bodies)
+    for (const auto& at : {move.from, move.to})
+      boxes.push_back(moved(geometry_.scene.bodies[move.body].box, at));
   return boxes;
 }
 
@@ -168,9 +140,9 @@ void KeptLinks::route(const std::vector<Part>& parts, const TileBoxes& tiles, So
     auto& counted = counters_.as<shaders::Counters>().front();
     counted = {};
     counted.layers_max = solution.depth_layers_max;
-    gpu::Frame frame(device_, times_);
-    if (!std::exchange(layered().placed, true)) layered().route.read_receivers(frame, map_, *table_);
-    layered().route.record(frame, batches[batch], geometry_, map_, *table_, {table_->chunks, *direct_, true},
+    gpu::Frame frame(device_);
+    if (!std::exchange(layered().received, true)) layered().route.read_receivers(frame, map_, table_);
+    layered().route.record(frame, batches[batch], geometry_, map_, table_, {table_.chunks, direct_, true},
                            layered().store, pixels, settings_.layers, counters_);
     frame.to_host(counters_);
     frame.submit_and_wait();
@@ -200,8 +172,7 @@ void KeptLinks::route(const std::vector<Part>& parts, const TileBoxes& tiles, So
 
 LinkCheck KeptLinks::check(std::uint32_t pairs) {
   LinkCheck all;
-  if (offsets_.empty()) return all;  // nothing is linked, or linking has failed
-  for (std::uint32_t done = 0; done < pairs && checked_ < table_->pairs; done += 2) {
+  for (std::uint32_t done = 0; done < pairs && done_.pairs_checked < table_.pairs; done += 2) {
     const auto two = check_two();
     all.links += two.links;
     all.differing += two.differing;
@@ -213,29 +184,29 @@ LinkCheck KeptLinks::check(std::uint32_t pairs) {
 
 // The next two pairs, which is as few as a word of the table holds.
 LinkCheck KeptLinks::check_two() {
-  const auto pixels = settings_.raster(), first = checked_;
-  if (!again_) again_ = table_->make_chunk(device_, "lightfield/links again", 0, 2);
+  const auto pixels = settings_.raster(), first = done_.pairs_checked;
+  if (!again_) again_ = table_.make_chunk(device_, "lightfield/links again", 0, 2);
   again_->first_pair = first;
-  const auto chunk = std::find_if(table_->chunks.begin(), table_->chunks.end(),
+  const auto chunk = std::find_if(table_.chunks.begin(), table_.chunks.end(),
                                   [&](const auto& c) { return first < c.first_pair + c.pairs; });
   std::vector<Part> parts;
   for (const auto pair : {first, first + 1}) parts.push_back(whole_raster(pair));
   auto& counted = counters_.as<shaders::Counters>().front();
   counted = {};
-  for (const auto& batch : pack(parts, layered().store.extent, table_->boxes(offsets_))) {
-    gpu::Frame frame(device_, times_);
+  for (const auto& batch : pack(parts, layered().store.extent, table_.boxes(done_.linked_at))) {
+    gpu::Frame frame(device_);
     counted.doubts = counted.rest = 0;
-    layered().route.record(frame, batch, geometry_, map_, *table_, {{&*again_, 1}, *direct_, false},
+    layered().route.record(frame, batch, geometry_, map_, table_, {{&*again_, 1}, direct_, false},
                            layered().store, pixels, settings_.layers, counters_);
     frame.to_host(counters_);
     frame.submit_and_wait();
   }
-  gpu::Frame frame(device_, times_);
-  layered().route.compare(frame, *table_, *chunk, first, *again_, counters_);
+  gpu::Frame frame(device_);
+  layered().route.compare(frame, table_, *chunk, first, *again_, counters_);
   frame.to_host(counters_);
   frame.submit_and_wait();
-  checked_ += 2;
-  return {.links = 2 * std::uint64_t{table_->texels},
+  done_.pairs_checked += 2;
+  return {.links = 2 * std::uint64_t{table_.texels},
           .differing = counted.differing,
           .misses = counted.misses,
           .rays_unknown = counted.unknown};
@@ -243,7 +214,7 @@ LinkCheck KeptLinks::check_two() {
 
 void KeptLinks::find_shown(gpu::Frame& frame) {
   if (!cover_unknown_.empty())
-    layered().route.find_cover(frame, geometry_, map_, *table_, directions_, settings_.raster(),
+    layered().route.find_cover(frame, geometry_, map_, table_, directions_, settings_.raster(),
                                {cover_unknown_.begin(), cover_unknown_.end()});
   cover_unknown_.clear();
   geometry_texture_.find_shown(frame, map_);

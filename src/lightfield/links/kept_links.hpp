@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "lichtveld/lightfield/directions.hpp"
-#include "lichtveld/lightfield/links.hpp"
+#include "lichtveld/lightfield/light_field.hpp"
 #include "links/route_links.hpp"
 #include "passes/geometry_texture.hpp"
 
@@ -17,26 +17,25 @@ namespace lichtveld::lightfield {
 
 class KeptLinks {
  public:
-  // Throws like Links. The device, the scene and `times` must outlive it.
-  KeptLinks(const gpu::Device& device, const scene::Scene& scene, const Settings& settings,
-            gpu::PassTimes& times);
+  // Throws like Links. The device and the scene must outlive it.
+  KeptLinks(const gpu::Device& device, const scene::Scene& scene, const Settings& settings);
 
-  // Where the bodies are, as they are linked [m]; empty before the first time.
-  const std::vector<glm::vec3>& offsets() const { return offsets_; }
-  // Brings the links to where the bodies are, and what it counts into `solution`.
-  void link(const std::vector<glm::vec3>& to, Solution& solution);
+  // Brings the links to where the bodies are, and what it counts into `solution`. Should it throw, all of them
+  // have to be linked again (moves.all).
+  void link(const scene::Offsets& to, const Moves& moves, Solution& solution);
   // Sums direct light up afresh, where links have changed since: what they have kept, by construction.
   void sum_direct();
-  // As Links::check.
+  // As LightField::check, once all is linked.
   LinkCheck check(std::uint32_t pairs);
   // Writes map().shown: what lies open to the light where the bodies are.
   void find_shown(gpu::Frame& frame);
 
   // Groups of texels (of shaders::TILE) beside what the last link() found moved.
   const std::vector<std::uint32_t>& beside() const { return beside_; }
+  const TexelRecords& records() const { return records_; }
   const LightMap& map() const { return map_; }
-  const LinkTable& table() const { return *table_; }
-  const DirectLight& direct() const { return *direct_; }
+  const LinkTable& table() const { return table_; }
+  const DirectLight& direct() const { return direct_; }
   const gpu::Buffer& directions() const { return directions_; }  // vec4 a pair: xyz; w: solid angle [sr]
 
  private:
@@ -46,39 +45,42 @@ class KeptLinks {
         : store(device, settings, capacity), route(device, store, table) {}
     LinkStore store;
     RouteLinks route;
-    bool placed = false;  // the texels, where they are now
+    bool received = false;  // RouteLinks::read_receivers, since the last move
   };
 
-  void place(gpu::Frame& frame, const std::vector<glm::vec3>& to);
+  void place(gpu::Frame& frame, const scene::Offsets& to, const Moves& moves);
   Part whole_raster(std::uint32_t pair) const;
   std::vector<Part> whole_rasters() const;
-  std::vector<Part> changed_parts(std::size_t body, const glm::vec3& from, const glm::vec3& to) const;
-  std::vector<scene::Box> moved_boxes(const std::vector<glm::vec3>& from,
-                                      const std::vector<glm::vec3>& to) const;
+  std::vector<Part> changed_parts(const Moves::Move& move) const;
+  std::vector<scene::Box> moved_boxes(const Moves& moves) const;
   void route(const std::vector<Part>& parts, const TileBoxes& tiles, Solution& solution);
   Layered& layered();
   LinkCheck check_two();
 
   const gpu::Device& device_;
   const Settings settings_;
-  gpu::PassTimes& times_;
-  const std::vector<Direction> pairs_;  // the direction of each
+  const TexelRecords records_;
+  const DirectionSet set_;
   Geometry geometry_;
   LightMap map_;
   GeometryTexture geometry_texture_;
   gpu::Buffer counters_;    // host-visible
-  gpu::Buffer directions_;  // of pairs_
-  std::unique_ptr<LinkTable> table_;
-  std::unique_ptr<DirectLight> direct_;
-  bool summed_ = false;     // direct light, since the last move
+  gpu::Buffer directions_;  // of the pairs
+  LinkTable table_;
+  DirectLight direct_;
   std::uint32_t capacity_;  // layers of a pixel's list
   std::unique_ptr<Layered> layered_;
   std::optional<LinkTable::Chunk> again_;  // links of two pairs, to compare
-  std::vector<glm::vec3> offsets_;
+  // What has been done since the last move.
+  struct Done {
+    scene::Offsets linked_at;    // where the bodies are
+    bool direct_summed = false;  // afresh
+    std::uint32_t pairs_checked = 0;
+  };
+  Done done_;
   std::vector<std::uint32_t> beside_;
   // Groups of texels that may be covered otherwise than map_.cover says.
   std::set<std::uint32_t> cover_unknown_;
-  std::uint32_t checked_ = 0;  // pairs, since the last move
 };
 
 }  // namespace lichtveld::lightfield

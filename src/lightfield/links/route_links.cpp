@@ -196,7 +196,7 @@ void RouteLinks::record(gpu::Frame& frame, const RegionBatch& batch, const Geome
   frame.compute(count_, {gpu::reads(store.filled), gpu::writes(counters)},
                 shaders::CountLayersConstants{.pixels = batch.pixels, .limit = limit}, many_groups, 1);
 
-  const auto lamps = to.keeps_direct ? table.lamp_count() : 0u;
+  const auto lamps = to.keeps_direct ? table.records.lamps().count() : 0u;
   const auto look = [&](const gpu::ComputePipeline& pipeline, const LinkTable::Chunk& chunk,
                         std::uint32_t first_job, std::uint32_t groups) {
     frame.compute(pipeline,
@@ -212,7 +212,7 @@ void RouteLinks::record(gpu::Frame& frame, const RegionBatch& batch, const Geome
                                                .pairs = chunk.pairs,
                                                .first_job = first_job,
                                                .lamps = lamps,
-                                               .lamps_alike = table.lamps_alike,
+                                               .lamps_alike = table.records.lamps().alike(),
                                                .half_pairs = table.pairs / 2},
                   groups, 1);
   };

@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <optional>
-#include <utility>
 
 #include "shaders/geometry_texture.frag.h"
 #include "shaders/geometry_texture.vert.h"
@@ -29,14 +28,12 @@ GeometryTexture::GeometryTexture(const gpu::Device& device)
       walls_(device, "geometry_texture", geometry_texture_walls_comp,
              {.kinds = {gpu::Kind::storage_image, gpu::Kind::storage_image, gpu::Kind::storage_buffer,
                         gpu::Kind::texel_buffer, gpu::Kind::storage_image}}),
-      gutter_(
-          device, "geometry_texture", geometry_texture_gutter_comp,
-          {.kinds = std::vector(5, gpu::Kind::storage_image), .push_bytes = sizeof(shaders::GutterConstants)}) {
-}
+      gutter_(device, "geometry_texture", geometry_texture_gutter_comp,
+              {.kinds = std::vector(5, gpu::Kind::storage_image)}) {}
 
-void GeometryTexture::record(gpu::Frame& frame, const Geometry& geometry, const LightMap& map) {
-  const auto before = std::exchange(drawn_, geometry.shifts);
-  const std::optional<vk::ClearValue> cleared = before.empty() ? std::optional(vk::ClearValue{}) : std::nullopt;
+void GeometryTexture::record(gpu::Frame& frame, const Geometry& geometry, const LightMap& map,
+                             const Moves& moves) const {
+  const auto cleared = moves.all ? std::optional(vk::ClearValue{}) : std::nullopt;
   gpu::Target target{.extent = map.position.extent()};
   for (const auto* image : {&map.position, &map.normal, &map.face_normal, &map.albedo, &map.emission})
     target.colours.push_back({image, cleared});
@@ -46,7 +43,7 @@ void GeometryTexture::record(gpu::Frame& frame, const Geometry& geometry, const 
     const auto offsets = geometry.offsets.as<glm::vec4>();
     draw.geometry(geometry.vertices, geometry.indices);
     for (const auto& surface : geometry.scene.surfaces) {
-      if (!before.empty() && before[surface.body] == drawn_[surface.body]) continue;
+      if (!moves.has(surface.body)) continue;
       const auto& material = geometry.scene.materials[surface.material];
       draw.bind(draw_, {material.texture < 0 ? textures.back() : textures[material.texture]});
       draw.push(shaders::GeometryConstants{.offset = offsets[surface.body],
@@ -62,21 +59,11 @@ void GeometryTexture::record(gpu::Frame& frame, const Geometry& geometry, const 
                 map.groups, map.groups);
 }
 
-void GeometryTexture::find_sources(gpu::Frame& frame, const LightMap& map) const {
-  name_sources(frame, map, false, map.source);
-}
-
 void GeometryTexture::find_shown(gpu::Frame& frame, const LightMap& map) const {
-  name_sources(frame, map, true, map.shown);
-}
-
-void GeometryTexture::name_sources(gpu::Frame& frame, const LightMap& map, bool covered,
-                                   const gpu::Image& found) const {
   frame.compute(gutter_,
                 {gpu::reads(map.position), gpu::reads(map.face_normal), gpu::reads(map.cover),
-                 gpu::reads(covered ? map.source : map.shown), gpu::writes(found)},
-                shaders::GutterConstants{.size = map.size, .covered = covered ? 1u : 0u}, map.groups,
-                map.groups);
+                 gpu::reads(map.source), gpu::writes(map.shown)},
+                map.groups, map.groups);
 }
 
 }  // namespace lichtveld::lightfield

@@ -11,15 +11,6 @@ namespace {
 
 using Usage = vk::ImageUsageFlagBits;
 
-gpu::Image atlas_image(const gpu::Device& device, const char* name, std::uint32_t size, vk::Format format,
-                       vk::ImageUsageFlags usage) {
-  return {device,
-          std::string("lightfield/") + name,
-          {.width = size, .height = size},
-          format,
-          usage | Usage::eStorage | Usage::eTransferSrc | Usage::eTransferDst};
-}
-
 // Pixels from a texel whose walls matter: a texel looks at centres up to one pixel away, which a flat direction
 // draws out along the texel's plane; what lies beyond 8 has a cosine under 0.13 and 2 % of the light.
 constexpr float wall_reach = 8;
@@ -36,27 +27,44 @@ std::vector<gpu::Image> upload_textures(const gpu::Device& device, const scene::
   return images;
 }
 
+// The atlas texel that each texel sends the light of.
+std::vector<std::uint32_t> atlas_sources(const TexelRecords& records) {
+  std::vector<std::uint32_t> sources;
+  sources.reserve(records.source().size());
+  for (const auto record : records.source())
+    sources.push_back(record == no_record ? shaders::NO_TEXEL : records[record].atlas);
+  return sources;
+}
+
 }  // namespace
 
-LightMap::LightMap(const gpu::Device& device, std::uint32_t size)
-    : size(size),
+gpu::Image atlas_image(const gpu::Device& device, const char* name, std::uint32_t size, vk::Format format,
+                       vk::ImageUsageFlags usage) {
+  return {device,
+          std::string("lightfield/") + name,
+          {.width = size, .height = size},
+          format,
+          usage | Usage::eStorage | Usage::eTransferSrc | Usage::eTransferDst};
+}
+
+LightMap::LightMap(const gpu::Device& device, const TexelRecords& records)
+    : size(records.size()),
       groups((size + shaders::GROUP - 1) / shaders::GROUP),
       position(atlas_image(device, "position", size, rgba32f, Usage::eColorAttachment)),
       normal(atlas_image(device, "normal", size, rgba32f, Usage::eColorAttachment)),
       face_normal(atlas_image(device, "face_normal", size, rgba32f, Usage::eColorAttachment)),
-      near_walls(atlas_image(device, "near_walls", size, vk::Format::eR32G32B32A32Uint, {})),
+      near_walls(atlas_image(device, "near_walls", size, vk::Format::eR32G32B32A32Uint)),
       albedo(atlas_image(device, "albedo", size, rgba32f, Usage::eColorAttachment)),
       emission(atlas_image(device, "emission", size, rgba32f, Usage::eColorAttachment)),
-      source(atlas_image(device, "source", size, vk::Format::eR32Uint, {})),
-      shown(atlas_image(device, "shown", size, vk::Format::eR32Uint, {})),
-      cover(atlas_image(device, "cover", size, vk::Format::eR32Sfloat, {})),
-      psf_irradiance(atlas_image(device, "psf_irradiance", size, rgba32f, {})),
-      bounce_irradiance{atlas_image(device, "bounce_irradiance 0", size, rgba32f, {}),
-                        atlas_image(device, "bounce_irradiance 1", size, rgba32f, {})},
-      total_irradiance(atlas_image(device, "total_irradiance", size, rgba32f, {})),
-      half_difference(atlas_image(device, "half_difference", size, rgba32f, {})),
+      source(atlas_image(device, "source", size, vk::Format::eR32Uint)),
+      shown(atlas_image(device, "shown", size, vk::Format::eR32Uint)),
+      cover(atlas_image(device, "cover", size, vk::Format::eR32Sfloat)),
+      total_irradiance(atlas_image(device, "total_irradiance", size, rgba32f)),
+      half_difference(atlas_image(device, "half_difference", size, rgba32f)),
       radiance(atlas_image(device, "radiance", size, rgba32f, Usage::eSampled)),
-      presented(atlas_image(device, "presented", size, vk::Format::eR8G8B8A8Unorm, {})) {}
+      presented(atlas_image(device, "presented", size, vk::Format::eR8G8B8A8Unorm)) {
+  gpu::fill<std::uint32_t>(device, source, atlas_sources(records));
+}
 
 void check_on(const gpu::Device& device, const Settings& settings) {
   check(settings);
@@ -67,9 +75,11 @@ void check_on(const gpu::Device& device, const Settings& settings) {
                                 std::to_string(device.summary().max_image_size) + " at most");
 }
 
-std::vector<std::uint8_t> download_presented(const gpu::Device& device, const LightMap& map) {
+Shown download_presented(const gpu::Device& device, const LightMap& map) {
   const auto pixels = gpu::download<std::array<std::uint8_t, 4>>(device, map.presented);
-  return {pixels.front().data(), pixels.front().data() + 4 * pixels.size()};
+  return {.format = Shown::Format::srgb8,
+          .size = map.size,
+          .bytes = {pixels.front().data(), pixels.front().data() + 4 * pixels.size()}};
 }
 
 Geometry::Geometry(const gpu::Device& device, const scene::Scene& scene)
@@ -94,11 +104,11 @@ Geometry::Geometry(const gpu::Device& device, const scene::Scene& scene)
   device.name(sampler, "scene/sampler");
 }
 
-void Geometry::place(const std::vector<glm::vec3>& to, std::uint32_t pixels) {
-  shifts = to;
-  sphere = scene::bounding_sphere(scene, shifts);
+void Geometry::place(const scene::Offsets& to, std::uint32_t pixels) {
+  const gpu::TimeLedger::Stage stage(device_.times(), "find_walls");
+  sphere = scene::bounding_sphere(scene, to);
   const float pixel = 2 * sphere.radius / static_cast<float>(pixels);
-  const auto found = scene::find_walls(scene, shifts, shaders::CONTACT * pixel, wall_reach * pixel);
+  const auto found = scene::find_walls(scene, to, shaders::CONTACT * pixel, wall_reach * pixel);
   std::vector<glm::vec4> ends;
   for (const auto& line : found.lines) {
     ends.emplace_back(line.a, line.rises ? 1 : 0);
@@ -107,7 +117,7 @@ void Geometry::place(const std::vector<glm::vec3>& to, std::uint32_t pixels) {
   gpu::put<std::uint32_t>(device_, walls_first, found.first);
   gpu::put<glm::vec4>(device_, walls, ends);
   const auto places = offsets.as<glm::vec4>();
-  for (std::size_t body = 0; body < shifts.size(); ++body) places[body] = glm::vec4(shifts[body], 0);
+  for (std::size_t body = 0; body < to.size(); ++body) places[body] = glm::vec4(to[body], 0);
 }
 
 }  // namespace lichtveld::lightfield

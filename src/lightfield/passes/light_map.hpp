@@ -1,10 +1,11 @@
 // The textures in atlas space that the passes hand to each other, and the scene's geometry on the device.
 #pragma once
 
-#include <array>
 #include <vector>
 
+#include "core/texel_records.hpp"
 #include "lichtveld/gpu/transfer.hpp"
+#include "lichtveld/lightfield/light_field.hpp"
 #include "lichtveld/lightfield/settings.hpp"
 #include "lichtveld/scene/scene.hpp"
 
@@ -12,7 +13,8 @@ namespace lichtveld::lightfield {
 
 // All size * size, linear RGB, 32-bit float. Zero outside the charts where not said otherwise.
 struct LightMap {
-  LightMap(const gpu::Device& device, std::uint32_t size);
+  // With `source` filled in, and nothing else.
+  LightMap(const gpu::Device& device, const TexelRecords& records);
 
   std::uint32_t size;
   std::uint32_t groups;    // compute workgroups a side
@@ -23,22 +25,24 @@ struct LightMap {
                            // as bits [m]
   gpu::Image albedo;       // rgb: 0..1
   gpu::Image emission;     // rgb: Le [W m^-2 sr^-1]
-  gpu::Image source;       // uint: the texel whose light this one sends; gutters name their nearest
+  gpu::Image source;       // uint: the texel whose light this one sends: TexelRecords::source()
   gpu::Image shown;        // uint: the texel whose light players see; covered texels name theirs too
   gpu::Image cover;        // weights [sr] of rays that start in contact with a surface, less all others
-  gpu::Image psf_irradiance;                    // rgb: w_k L_k [W m^-2]; a: w_k [sr]; of one direction
-  std::array<gpu::Image, 2> bounce_irradiance;  // their sums over each half of the directions
-  gpu::Image total_irradiance;                  // rgb: E [W m^-2]; a: 1 on valid texels
-  gpu::Image half_difference;  // rgb: by how much each half of the directions differs from E [W m^-2], signed
-  gpu::Image radiance;         // rgb: L [W m^-2 sr^-1], gutters too; a: 1 on charts and gutters
-  gpu::Image presented;        // sRGB RGBA8: tone-mapped L
+  gpu::Image total_irradiance;  // rgb: E [W m^-2]; a: 1 on valid texels
+  gpu::Image half_difference;   // rgb: by how much each half of the directions differs from E [W m^-2], signed
+  gpu::Image radiance;          // rgb: L [W m^-2 sr^-1], gutters too; a: 1 on charts and gutters
+  gpu::Image presented;         // sRGB RGBA8: tone-mapped L
 };
 
 // check(settings), and that the device can do images of that size.
 void check_on(const gpu::Device& device, const Settings& settings);
 
-// The presented map's bytes, RGBA.
-std::vector<std::uint8_t> download_presented(const gpu::Device& device, const LightMap& map);
+// The presented map.
+Shown download_presented(const gpu::Device& device, const LightMap& map);
+
+// An image in atlas space; `usage` besides storage and transfers.
+gpu::Image atlas_image(const gpu::Device& device, const char* name, std::uint32_t size, vk::Format format,
+                       vk::ImageUsageFlags usage = {});
 
 // The scene's triangles and textures on the device, and where its bodies are.
 struct Geometry {
@@ -46,11 +50,10 @@ struct Geometry {
 
   // Shifts body i by to[i] [m] from rest and finds what stands on what, as rasters of `pixels` a side can
   // tell. Not while a frame is under way.
-  void place(const std::vector<glm::vec3>& to, std::uint32_t pixels);
+  void place(const scene::Offsets& to, std::uint32_t pixels);
 
   const scene::Scene& scene;
-  std::vector<glm::vec3> shifts;  // of the bodies from rest [m]
-  scene::Sphere sphere;           // around all of them at their places
+  scene::Sphere sphere;  // around all of them at their places
   gpu::Buffer vertices, indices;
   gpu::Buffer offsets;  // vec4 a body, host-visible as the next two
   gpu::Buffer walls_first,

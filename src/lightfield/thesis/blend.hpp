@@ -4,17 +4,28 @@
 // disagreement tells the error. Reads psf_irradiance, or bounce_irradiance; costs texels.
 #pragma once
 
+#include <array>
+
 #include "passes/light_map.hpp"
 
 namespace lichtveld::lightfield {
 
+// What a bounce adds up, in atlas space: as LightMap's images.
+struct BounceSums {
+  BounceSums(const gpu::Device& device, std::uint32_t size);
+
+  gpu::Image psf_irradiance;                    // rgb: w_k L_k [W m^-2]; a: w_k [sr]; of one direction
+  std::array<gpu::Image, 2> bounce_irradiance;  // their sums over each half of the directions
+};
+
 class Blend {
  public:
   explicit Blend(const gpu::Device& device);
-  // `half`: which of the bounce's two sums the direction belongs to.
-  void psf_into_bounce(gpu::Frame& frame, const LightMap& map, std::uint32_t half) const;
+  // `half`: which of the bounce's two sums the direction belongs to; `groups`: LightMap::groups.
+  void psf_into_bounce(gpu::Frame& frame, const BounceSums& sums, std::uint32_t half,
+                       std::uint32_t groups) const;
   // Both halves into total_irradiance, their disagreement into half_difference; clears the bounce.
-  void bounce_into_total(gpu::Frame& frame, const LightMap& map) const;
+  void bounce_into_total(gpu::Frame& frame, const BounceSums& sums, const LightMap& map) const;
 
  private:
   gpu::ComputePipeline psf_, bounce_;

@@ -55,7 +55,7 @@ LayerStore::LayerStore(const gpu::Device& device, const Settings& settings, std:
       samples(std::min(capacity, device.summary().samples)),
       fetch(device.handle(), vk::SamplerCreateInfo{}) {
   device.name(fetch, "lightfield/fetch");
-  if (settings.abuffer == ABuffer::list) {
+  if (settings.thesis.abuffer == ABuffer::list) {
     const auto pixels = vk::DeviceSize{size} * size;
     const auto usage = vk::BufferUsageFlagBits::eStorageBuffer | vk::BufferUsageFlagBits::eTransferDst;
     const auto bytes = pixels * capacity * sizeof(glm::vec4);

@@ -28,12 +28,12 @@ StencilRouting::StencilRouting(const gpu::Device& device, const LayerStore& stor
               .specialisation = {store.capacity, static_cast<std::uint32_t>(sort), store.samples}}) {}
 
 void StencilRouting::record(gpu::Frame& frame, const shaders::PsfView& view, const LayerStore& store,
-                            const Geometry& geometry, const LightMap& map, bool count,
+                            const Geometry& geometry, const LightMap& map, const BounceSums& sums, bool count,
                             const gpu::Buffer& counters) const {
   auto bindings = store.bindings();
   bindings.insert(bindings.end(),
                   {gpu::reads(map.position), gpu::reads(map.normal), gpu::reads(map.face_normal),
-                   gpu::writes(map.psf_irradiance), gpu::writes(map.cover), gpu::reads(geometry.walls_first),
+                   gpu::writes(sums.psf_irradiance), gpu::writes(map.cover), gpu::reads(geometry.walls_first),
                    gpu::fetches(geometry.walls), gpu::reads(map.near_walls), gpu::writes(counters)});
   frame.compute(route_, bindings,
                 shaders::RoutingConstants{.view = view, .size = store.size, .count = count ? 1u : 0u},

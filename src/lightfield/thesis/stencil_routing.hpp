@@ -4,6 +4,7 @@
 // Costs texels times layers; the sort is chosen by Settings::sort.
 #pragma once
 
+#include "thesis/blend.hpp"
 #include "thesis/emit_radiance.hpp"
 
 namespace lichtveld::lightfield {
@@ -14,7 +15,8 @@ class StencilRouting {
 
   // If `count` is set, rays and misses are counted into `counters`, and what lies in contact into `cover`.
   void record(gpu::Frame& frame, const shaders::PsfView& view, const LayerStore& store,
-              const Geometry& geometry, const LightMap& map, bool count, const gpu::Buffer& counters) const;
+              const Geometry& geometry, const LightMap& map, const BounceSums& sums, bool count,
+              const gpu::Buffer& counters) const;
 
  private:
   gpu::ComputePipeline route_;

@@ -1,4 +1,4 @@
-#include "lichtveld/lightfield/thesis.hpp"
+#include "thesis/thesis.hpp"
 
 #include <spdlog/spdlog.h>
 
@@ -7,169 +7,114 @@
 
 #include "core/convergence.hpp"
 #include "core/psf_view.hpp"
-#include "passes/brdf.hpp"
-#include "passes/geometry_texture.hpp"
-#include "passes/tone_map.hpp"
-#include "thesis/blend.hpp"
-#include "thesis/emit_radiance.hpp"
-#include "thesis/stencil_routing.hpp"
 
 namespace lichtveld::lightfield {
 
 namespace {
 
 // PSFs a submission: bounds its queries and how long a GPU is held at a stretch.
-constexpr std::size_t psfs_a_frame = 128;
-
-// The sort networks want a power of two, and every sample of a routed pass is used.
-std::uint32_t capacity_for(std::uint32_t layers, const Settings& settings, const gpu::Device& device) {
-  const auto capacity = std::bit_ceil(layers);
-  return settings.abuffer == ABuffer::stencil ? std::max(capacity, device.summary().samples) : capacity;
-}
-
-// Everything that depends on how many layers the A-buffer holds.
-struct Layered {
-  Layered(const gpu::Device& device, const Settings& settings, std::uint32_t capacity)
-      : store(device, settings, capacity),
-        emit(device, store),
-        route(device, store, settings.sort),
-        show(device, store) {}
-  LayerStore store;
-  EmitRadiance emit;
-  StencilRouting route;
-  ShowLayer show;
-};
+constexpr std::uint32_t psfs_a_frame = 128;
 
 }  // namespace
 
-struct Thesis::Parts {
-  Parts(const gpu::Device& device, const scene::Scene& scene, const Settings& settings)
-      : device(device),
-        settings(settings),
-        psfs(directions(settings.psf, settings.weights, settings.seed)),
-        geometry(device, scene),
-        map(device, settings.size),
-        layered(std::make_unique<Layered>(device, settings, capacity_for(settings.layers, settings, device))),
-        geometry_texture(device),
-        blend(device),
-        brdf(device),
-        tone_map(device),
-        counters(device, "lightfield/counters", sizeof(shaders::Counters),
-                 vk::BufferUsageFlagBits::eStorageBuffer | vk::BufferUsageFlagBits::eTransferDst,
-                 gpu::Memory::host) {}
+Thesis::Layered::Layered(const gpu::Device& device, const Settings& settings, std::uint32_t capacity)
+    : store(device, settings, capacity),
+      emit(device, store),
+      route(device, store, settings.thesis.sort),
+      show(device, store) {}
 
-  const gpu::Device& device;
-  const Settings settings;
-  const std::vector<Direction> psfs;
-  gpu::PassTimes times;
-  Geometry geometry;
-  LightMap map;
-  std::unique_ptr<Layered> layered;
-  GeometryTexture geometry_texture;
-  Blend blend;
-  Brdf brdf;
-  ToneMap tone_map;
-  gpu::Buffer counters;
+Thesis::Thesis(const gpu::Device& device, const scene::Scene& scene, const Settings& settings)
+    : LightField(scene.bodies.size()),
+      device_((check_on(device, settings), device)),
+      begun_(device.times().so_far()),
+      settings_(settings),
+      directions_(settings.psf, settings.weights, settings.seed),
+      records_(device.times().time("texel_records", [&] { return TexelRecords(scene, settings.size); })),
+      geometry_(device, scene),
+      map_(device, records_),
+      sums_(device, settings.size),
+      geometry_texture_(device),
+      blend_(device),
+      brdf_(device),
+      tone_map_(device),
+      counters_(device, "lightfield/counters", sizeof(shaders::Counters),
+                vk::BufferUsageFlagBits::eStorageBuffer | vk::BufferUsageFlagBits::eTransferDst,
+                gpu::Memory::host) {}
 
-  shaders::PsfView view(std::size_t psf) const {
-    return psf_view(psfs[psf], geometry.sphere, layered->store.size);
-  }
-  void begin(const std::vector<glm::vec3>& offsets);
-  void render_bounce(bool count, Solution& solution, const StageObserver& observer, std::uint32_t observed);
-  void render_psfs(std::size_t first, std::size_t end, bool count, Solution& solution);
-  void clear_bounce(gpu::Frame& frame);
-  void end_bounce();
-  void present();
-  bool widen(const Solution& solution);
-  bool done(const Solution& solution) const;
-  void show_stages(const StageObserver& observer);
-  void show_result(const StageObserver& observer);
-};
-
-Thesis::Thesis(const gpu::Device& device, const scene::Scene& scene, const Settings& settings) {
-  check_on(device, settings);
-  parts_ = std::make_unique<Parts>(device, scene, settings);
-}
-
-Thesis::~Thesis() = default;
-
-// Algorithm 1.
-Solution Thesis::solve(const std::vector<glm::vec3>& offsets, const StageObserver& observer,
-                       std::uint32_t observed) {
-  Parts& parts = *parts_;
-  Solution solution;
-  parts.begin(offsets);  // geometry_texture, and L = Le
-  Convergence convergence(parts.device, parts.map);
-  solution.texels_valid = convergence.texels_valid();
-  while (!parts.done(solution)) {
-    const bool first = solution.bounces == 0;
-    parts.render_bounce(first, solution, observer,
-                        observed);                 // for each PSF: emit_radiance, stencil_routing, blend
-    if (first && parts.widen(solution)) continue;  // layers would have been lost: again, with more
-    parts.end_bounce();                            // blend into the total; brdf
+// Algorithm 1. Whatever is known of before, it is computed afresh.
+bool Thesis::compute(Light, const Moves& moves, const Enough&, Solution& solution) {
+  begin(moves);  // geometry_texture, and L = Le
+  Convergence convergence(records_);
+  solution = {.texels_valid = records_.count()};
+  while (!done(solution)) {
+    render_bounce(solution);  // for each PSF: emit_radiance, stencil_routing, blend
+    if (solution.bounces == 0 && widen(solution)) continue;  // layers would have been lost: again, with more
+    end_bounce();                                            // blend into the total; brdf
     ++solution.bounces;
-    solution.residual = convergence.measure(parts.device, parts.map);
+    solution.residual = convergence.measure(irradiance());
   }
-  solution.error_estimate = split_half_error(parts.device, parts.map);
-  parts.present();  // tone_map
-  if (observer) parts.show_result(observer);
-  return solution;
-}
-
-std::vector<glm::vec4> Thesis::irradiance() {
-  return gpu::download<glm::vec4>(parts_->device, parts_->map.total_irradiance);
-}
-
-std::vector<std::uint8_t> Thesis::presented() {
-  return download_presented(parts_->device, parts_->map);
-}
-
-const gpu::PassTimes& Thesis::times() const {
-  return parts_->times;
-}
-
-bool Thesis::Parts::done(const Solution& solution) const {
-  if (settings.bounces) return solution.bounces >= *settings.bounces;
-  if (solution.bounces < most_bounces) return solution.bounces > 0 && solution.residual < converged;
-  warn_of_no_bound(solution);
+  present();  // tone_map
+  if (observer_) show_result();
   return true;
 }
 
-void Thesis::Parts::begin(const std::vector<glm::vec3>& offsets) {
-  geometry.place(offsets, settings.raster());
-  gpu::Frame frame(device, times);
-  frame.clear("blend", map.total_irradiance, {});
+double Thesis::error_estimate() const {
+  return split_half_error(irradiance(), gpu::download<glm::vec4>(device_, map_.half_difference));
+}
+
+void Thesis::observe(StageObserver observer, std::uint32_t direction) {
+  observer_ = std::move(observer);
+  observed_ = direction;
+}
+
+// The sort networks want a power of two, and every sample of a routed pass is used.
+std::uint32_t Thesis::capacity_for(std::uint32_t layers) const {
+  const auto capacity = std::bit_ceil(layers);
+  return settings_.thesis.abuffer == ABuffer::stencil ? std::max(capacity, device_.summary().samples)
+                                                      : capacity;
+}
+
+bool Thesis::done(const Solution& solution) const {
+  if (settings_.bounces) return solution.bounces >= *settings_.bounces;
+  return solution.bounces >= most_bounces || (solution.bounces > 0 && solution.residual < converged);
+}
+
+void Thesis::begin(const Moves& moves) {
+  if (!layered_) layered_ = std::make_unique<Layered>(device_, settings_, capacity_for(settings_.layers));
+  geometry_.place(offsets(), settings_.raster());
+  gpu::Frame frame(device_);
+  frame.clear("blend", map_.total_irradiance, {});
   clear_bounce(frame);
-  geometry_texture.record(frame, geometry, map);
-  geometry_texture.find_sources(frame, map);
-  brdf.record(frame, map);
+  geometry_texture_.record(frame, geometry_, map_, moves);
+  brdf_.record(frame, map_);
   frame.submit_and_wait();
 }
 
-void Thesis::Parts::render_bounce(bool count, Solution& solution, const StageObserver& observer,
-                                  std::uint32_t observed) {
+void Thesis::render_bounce(Solution& solution) {
+  const bool count = solution.bounces == 0;
   if (count) solution.overflow_pixels = solution.rays = solution.misses = solution.rays_unknown = 0;
-  const bool observing = count && observer && observed < psfs.size();
-  for (std::size_t first = 0; first < psfs.size();) {
-    std::size_t end = std::min(first + psfs_a_frame, psfs.size());
-    if (observing && first <= observed) end = std::min<std::size_t>(end, observed + 1);
-    render_psfs(first, end, count, solution);
-    if (observing && end == observed + 1) show_stages(observer);
+  const bool observing = count && observer_ && observed_ < directions_.size();
+  for (std::uint32_t first = 0; first < directions_.size();) {
+    auto end = std::min(first + psfs_a_frame, directions_.size());
+    if (observing && first <= observed_) end = std::min(end, observed_ + 1);
+    render_psfs({first, end}, count, solution);
+    if (observing && end == observed_ + 1) show_stages();
     first = end;
   }
 }
 
-void Thesis::Parts::render_psfs(std::size_t first, std::size_t end, bool count, Solution& solution) {
-  auto& counted = counters.as<shaders::Counters>().front();
+void Thesis::render_psfs(Range range, bool count, Solution& solution) {
+  auto& counted = counters_.as<shaders::Counters>().front();
   counted = {};
   counted.layers_max = solution.depth_layers_max;
-  gpu::Frame frame(device, times);
-  for (std::size_t psf = first; psf < end; ++psf) {
-    layered->emit.record(frame, view(psf), geometry, map, layered->store, settings.layers, count, counters);
-    layered->route.record(frame, view(psf), layered->store, geometry, map, count, counters);
-    blend.psf_into_bounce(frame, map, psfs[psf].half);
+  gpu::Frame frame(device_);
+  for (auto psf = range.first; psf < range.end; ++psf) {
+    const auto view = psf_view(directions_[psf], geometry_.sphere, layered_->store.size);
+    layered_->emit.record(frame, view, geometry_, map_, layered_->store, settings_.layers, count, counters_);
+    layered_->route.record(frame, view, layered_->store, geometry_, map_, sums_, count, counters_);
+    blend_.psf_into_bounce(frame, sums_, directions_[psf].half, map_.groups);
   }
-  frame.to_host(counters);
+  frame.to_host(counters_);
   frame.submit_and_wait();
   solution.rays += counted.rays;
   solution.misses += counted.misses;
@@ -179,63 +124,63 @@ void Thesis::Parts::render_psfs(std::size_t first, std::size_t end, bool count, 
 }
 
 // Makes room for all the layers there are. False if there was enough.
-bool Thesis::Parts::widen(const Solution& solution) {
+bool Thesis::widen(const Solution& solution) {
   const auto needed = solution.depth_layers_max;
-  if (needed <= layered->store.capacity) return false;
+  if (needed <= layered_->store.capacity) return false;
   if (needed > most_layers)
     throw std::runtime_error("a PSF pixel has " + std::to_string(needed) + " layers, more than the " +
                              std::to_string(most_layers) +
                              " that can be kept; try fewer surfaces behind each other");
   spdlog::warn("{} PSF pixels have more than {} layers, up to {}: room is made for all of them",
-               solution.overflow_pixels, settings.layers, needed);
-  layered.reset();  // first, so that both need not fit
-  layered = std::make_unique<Layered>(device, settings, capacity_for(needed, settings, device));
-  gpu::Frame frame(device, times);
+               solution.overflow_pixels, settings_.layers, needed);
+  layered_.reset();  // first, so that both need not fit
+  layered_ = std::make_unique<Layered>(device_, settings_, capacity_for(needed));
+  gpu::Frame frame(device_);
   clear_bounce(frame);
   frame.submit_and_wait();
   return true;
 }
 
-void Thesis::Parts::clear_bounce(gpu::Frame& frame) {
-  for (const auto& half : map.bounce_irradiance) frame.clear("blend", half, {});
-  frame.clear("stencil_routing", map.cover, {});
+void Thesis::clear_bounce(gpu::Frame& frame) const {
+  for (const auto& half : sums_.bounce_irradiance) frame.clear("blend", half, {});
+  frame.clear("stencil_routing", map_.cover, {});
 }
 
-void Thesis::Parts::end_bounce() {
-  gpu::Frame frame(device, times);
-  blend.bounce_into_total(frame, map);
-  brdf.record(frame, map);
+void Thesis::end_bounce() {
+  gpu::Frame frame(device_);
+  blend_.bounce_into_total(frame, sums_, map_);
+  brdf_.record(frame, map_);
   frame.submit_and_wait();
 }
 
-void Thesis::Parts::present() {
-  gpu::Frame frame(device, times);
-  geometry_texture.find_shown(frame, map);
-  tone_map.record(frame, map);
+void Thesis::present() {
+  gpu::Frame frame(device_);
+  geometry_texture_.find_shown(frame, map_);
+  tone_map_.record(frame, map_);
   frame.submit_and_wait();
 }
 
-void Thesis::Parts::show_stages(const StageObserver& observer) {
-  for (std::uint32_t layer = 0; layer < layered->store.capacity; ++layer) {
-    const gpu::Image shown(device, "lightfield/shown_layer",
-                           {.width = layered->store.size, .height = layered->store.size},
+void Thesis::show_stages() {
+  for (std::uint32_t layer = 0; layer < layered_->store.capacity; ++layer) {
+    const gpu::Image shown(device_, "lightfield/shown_layer",
+                           {.width = layered_->store.size, .height = layered_->store.size},
                            vk::Format::eR32G32B32A32Sfloat,
                            vk::ImageUsageFlagBits::eStorage | vk::ImageUsageFlagBits::eTransferSrc);
-    gpu::Frame frame(device, times);
-    layered->show.record(frame, layered->store, layer, shown);
+    gpu::Frame frame(device_);
+    layered_->show.record(frame, layered_->store, layer, shown);
     frame.submit_and_wait();
-    observer("emit_radiance.layer" + std::to_string(layer), shown);
+    observer_("emit_radiance.layer" + std::to_string(layer), {device_, shown});
   }
-  observer("stencil_routing.psf_irradiance", map.psf_irradiance);
+  observer_("stencil_routing.psf_irradiance", {device_, sums_.psf_irradiance});
 }
 
-void Thesis::Parts::show_result(const StageObserver& observer) {
-  observer("geometry_texture.position", map.position);
-  observer("geometry_texture.normal", map.normal);
-  observer("geometry_texture.albedo", map.albedo);
-  observer("geometry_texture.emission", map.emission);
-  observer("blend.total_irradiance", map.total_irradiance);
-  observer("brdf.radiance", map.radiance);
+void Thesis::show_result() {
+  observer_("geometry_texture.position", {device_, map_.position});
+  observer_("geometry_texture.normal", {device_, map_.normal});
+  observer_("geometry_texture.albedo", {device_, map_.albedo});
+  observer_("geometry_texture.emission", {device_, map_.emission});
+  observer_("blend.total_irradiance", {device_, map_.total_irradiance});
+  observer_("brdf.radiance", {device_, map_.radiance});
 }
 
 }  // namespace lichtveld::lightfield

@@ -11,6 +11,8 @@
 #include <vector>
 #include <vulkan/vulkan_raii.hpp>
 
+#include "lichtveld/gpu/times.hpp"
+
 namespace lichtveld::gpu {
 
 // No Vulkan device here can do the work. The message lists what was found and what to try.
@@ -61,6 +63,7 @@ class Device {
   const DeviceSummary& summary() const { return summary_; }
   float timestamp_period() const { return timestamp_period_; }  // ns a tick
   std::shared_ptr<MemoryLedger> ledger() const { return ledger_; }
+  TimeLedger& times() const { return *times_; }  // for the thread that uses the device
 
   // An index of a memory type among `allowed` (a mask) that has all of `flags`. Throws if there is none.
   std::uint32_t memory_type(std::uint32_t allowed, vk::MemoryPropertyFlags flags) const;
@@ -89,6 +92,7 @@ class Device {
 
   std::unique_ptr<Messages> messages_ = std::make_unique<Messages>();
   std::shared_ptr<MemoryLedger> ledger_ = std::make_shared<MemoryLedger>();
+  std::unique_ptr<TimeLedger> times_ = std::make_unique<TimeLedger>();
   vk::raii::Context context_;
   vk::raii::Instance instance_ = nullptr;
   vk::raii::DebugUtilsMessengerEXT messenger_ = nullptr;

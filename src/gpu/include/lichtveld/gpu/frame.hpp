@@ -4,7 +4,6 @@
 
 #include <chrono>
 #include <functional>
-#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -14,13 +13,6 @@
 #include "lichtveld/gpu/resources.hpp"
 
 namespace lichtveld::gpu {
-
-// What each pass has cost so far.
-struct PassTime {
-  std::uint64_t calls = 0;
-  double gpu_ms = 0;  // summed over the calls
-};
-using PassTimes = std::map<std::string, PassTime>;
 
 // A resource as a shader sees it.
 struct Binding {
@@ -87,8 +79,8 @@ class Draw {
 
 class Frame {
  public:
-  // Starts recording. Times of its passes are added to `times` when it has been waited for.
-  Frame(const Device& device, PassTimes& times);
+  // Starts recording. Times of its passes are added to Device::times() when it has been waited for.
+  explicit Frame(const Device& device);
   ~Frame();
   Frame(const Frame&) = delete;
   Frame& operator=(const Frame&) = delete;
@@ -150,7 +142,6 @@ class Frame {
   void flush_barriers();
 
   const Device& device_;
-  PassTimes& times_;
   vk::raii::CommandBuffer commands_ = nullptr;
   vk::raii::Fence submitted_ = nullptr;  // until it has been waited for
   std::vector<vk::raii::QueryPool> queries_;

@@ -17,9 +17,8 @@ Buffer upload(const Device& device, const std::string& name, std::span<const T> 
   Buffer staging(device, name + " (staging)", bytes, vk::BufferUsageFlagBits::eTransferSrc, Memory::host);
   std::ranges::copy(std::as_bytes(contents), staging.bytes().begin());
   Buffer buffer(device, name, bytes, usage | vk::BufferUsageFlagBits::eTransferDst, Memory::device, texels);
-  PassTimes times;
-  Frame frame(device, times);
-  frame.copy("upload " + name, staging, buffer);
+  Frame frame(device);
+  frame.copy("upload", staging, buffer);
   frame.submit_and_wait();
   return buffer;
 }
@@ -37,6 +36,17 @@ void put(const Device& device, Buffer& buffer, std::span<const T> contents) {
   std::ranges::copy(std::as_bytes(contents), buffer.bytes().begin());
 }
 
+// Fills an image's layer 0, row 0 first; T is as large as a pixel. The image needs eTransferDst.
+template <typename T>
+void fill(const Device& device, const Image& image, std::span<const T> pixels) {
+  Buffer staging(device, image.name() + " (staging)", pixels.size_bytes(),
+                 vk::BufferUsageFlagBits::eTransferSrc, Memory::host);
+  std::ranges::copy(std::as_bytes(pixels), staging.bytes().begin());
+  Frame frame(device);
+  frame.copy("upload", staging, image);
+  frame.submit_and_wait();
+}
+
 // A sampled 8-bit sRGB image with these pixels.
 Image upload_srgb(const Device& device, const std::string& name, std::uint32_t width, std::uint32_t height,
                   std::span<const std::uint8_t> rgba);
@@ -47,9 +57,8 @@ std::vector<T> download(const Device& device, const Image& image) {
   std::vector<T> pixels(std::size_t{image.shape().width} * image.shape().height);
   Buffer staging(device, image.name() + " (read back)", pixels.size() * sizeof(T),
                  vk::BufferUsageFlagBits::eTransferDst, Memory::host);
-  PassTimes times;
-  Frame frame(device, times);
-  frame.copy("read back " + image.name(), image, staging);
+  Frame frame(device);
+  frame.copy("read_back", image, staging);
   frame.to_host(staging);
   frame.submit_and_wait();
   std::memcpy(pixels.data(), staging.bytes().data(), pixels.size() * sizeof(T));

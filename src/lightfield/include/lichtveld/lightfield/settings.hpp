@@ -1,8 +1,10 @@
-// What a light field is computed with, and what came of it.
+// What a light field is computed with.
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
+#include <string>
 
 namespace lichtveld::lightfield {
 
@@ -11,44 +13,56 @@ enum class Sort { bitonic, compare_swap, scan };  // as SORT_* in shaders/includ
 // A direction's share: its solid angle (the thesis' correction factor), or the same for all.
 enum class Weights { solid_angle, equal };
 
+// The words for them, on the command line and in tables.
+const std::map<std::string, ABuffer>& words_of_abuffers();
+const std::map<std::string, Sort>& words_of_sorts();
+const std::map<std::string, Weights>& words_of_weights();
+std::string name_of(ABuffer abuffer);
+std::string name_of(Sort sort);
+std::string name_of(Weights weights);
+
 // What the A-buffer can hold: the stencil counts a pixel's layers in 8 bits.
 constexpr std::uint32_t most_layers = 128;
+
+// Of the engine `thesis`.
+struct ThesisSettings {
+  ABuffer abuffer = ABuffer::stencil;
+  Sort sort = Sort::compare_swap;
+};
+
+// Of the engine `links`.
+struct LinksSettings {
+  // Bounces of the map after a move, 1.., or 0.5, 0.25 or 0.125: over that share of the directions, in turn,
+  // and over all of them beside what has moved. Light straight from lamps is always of all.
+  float step_bounces = 0.125f;
+};
+
+// The side of a PSF's raster: so many pixels, or so many times the light map's texels.
+struct PsfSize {
+  double value = 1;
+  bool times = true;
+  bool operator==(const PsfSize&) const = default;
+
+  // Settings::psf_size for a light map of `size` texels a side.
+  std::uint32_t pixels(std::uint32_t size) const;
+};
 
 struct Settings {
   std::uint32_t size = 256;    // atlas, texels a side: 16..4096
   std::uint32_t psf = 384;     // directions: one of direction_counts()
   std::uint32_t psf_size = 0;  // PSF raster, pixels a side: 16..8192; 0: as many as the atlas has texels
-  std::optional<std::uint32_t> bounces =
-      {};                    // path segments up to the texel, 1 = direct light; empty: until converged
-  std::uint32_t layers = 8;  // of the A-buffer: 1..128; scenes that need more get more, and say so
-  ABuffer abuffer = ABuffer::stencil;
-  Sort sort = Sort::compare_swap;
+  // Path segments up to the texel, 1 = direct light; empty: until converged.
+  std::optional<std::uint32_t> bounces = {};
+  std::uint32_t layers = 8;  // of an A-buffer: 1..128; scenes that need more get more, and say so
   Weights weights = Weights::solid_angle;
-  // links: bounces of the map after a move, 1.., or 0.5, 0.25 or 0.125: over that share of the directions, in
-  // turn, and over all of them beside what has moved. Light straight from lamps is always of all.
-  float step_bounces = 0.125f;
   std::uint64_t seed = 0;  // of the directions' rotations and rasters: the same seed gives the same light map
+  ThesisSettings thesis = {};
+  LinksSettings links = {};
 
   std::uint32_t raster() const { return psf_size > 0 ? psf_size : size; }  // of a PSF [pixels a side]
 };
 
 // Throws std::invalid_argument that names the setting out of its range and the range.
 void check(const Settings& settings);
-
-struct Solution {
-  std::uint32_t bounces = 0;  // one over a part of the directions counts too
-  // What may still be missing from E, as a share of its mean: largest change in the last bounce / (1 - max
-  // albedo), which is more than all later bounces add. Infinite where some albedo is 1.
-  double residual = 0;
-  bool settled = true;  // nothing that more bounces would change, as far as asked for
-  // What rel_rmse against the exact answer has to be expected of this many directions and pixels: from what the
-  // two halves of the directions say apart. It sees what is random about them, not what they have in common.
-  double error_estimate = 0;
-  std::uint32_t texels_valid = 0;
-  std::uint32_t depth_layers_max = 0;  // most layers that any PSF pixel has
-  std::uint64_t overflow_pixels = 0;   // PSF pixels with more layers than Settings::layers
-  std::uint64_t rays = 0, misses = 0;  // of texels that face their direction; those that hit nothing
-  std::uint64_t rays_unknown = 0;      // those left out: no pixel near them lies on their side of all walls
-};
 
 }  // namespace lichtveld::lightfield

@@ -38,8 +38,8 @@ struct Texture {
   std::vector<std::uint8_t> rgba;
 };
 
-// One glTF primitive of one node: a run of Scene::indices with one material. One-sided surfaces stand before the
-// double-sided ones in Scene::surfaces, so that each kind is one run of indices.
+// One glTF primitive of one node: a run of Scene::indices with one material. One-sided surfaces stand before
+// the double-sided ones in Scene::surfaces, so that each kind is one run of indices.
 struct Surface {
   std::string node;  // the node's name, or "node 7"
   std::uint32_t first_index = 0, index_count = 0;
@@ -58,6 +58,9 @@ struct Body {
   Box box;             // of its triangles at rest, world space [m]
 };
 
+// How far each body is from its place at rest [m], one entry a body; the first, which stands still, is 0.
+using Offsets = std::vector<glm::vec3>;
+
 // The sphere that the light field scales to the unit sphere.
 struct Sphere {
   glm::vec3 centre{0};
@@ -67,28 +70,25 @@ struct Sphere {
 struct Scene {
   std::string file;
   std::vector<Vertex> vertices;
-  std::vector<std::uint32_t> indices;   // three a triangle, counter-clockwise seen from the front
-  std::uint32_t one_sided_indices = 0;  // the first so many indices are one-sided surfaces, the rest double-sided
+  std::vector<std::uint32_t> indices;  // three a triangle, counter-clockwise seen from the front
+  std::uint32_t one_sided_indices =
+      0;  // the first so many indices are one-sided surfaces, the rest double-sided
   std::vector<Surface> surfaces;
   std::vector<Material> materials;
   std::vector<Texture> textures;
   std::vector<Body> bodies;
 };
 
-// Reads a .glb or .gltf file. Throws SceneError for a file that is missing, damaged or hostile, or that lacks what
-// the light field needs (triangles, TEXCOORD_1). What is odd but harmless (zero-area triangles, no emitter) is
-// logged as a warning.
+// Reads a .glb or .gltf file. Throws SceneError for a file that is missing, damaged or hostile, or that lacks
+// what the light field needs (triangles, TEXCOORD_1). What is odd but harmless (zero-area triangles, no
+// emitter) is logged as a warning.
 Scene load(const std::filesystem::path& file);
 
-// The smallest sphere around the scene's bounding box with body i shifted by offsets[i] [m] (offsets may be shorter
-// than Scene::bodies; what is absent has not moved).
-Sphere bounding_sphere(const Scene& scene, const std::vector<glm::vec3>& offsets = {});
+// The smallest sphere around the scene's bounding box with body i shifted by offsets[i] [m] (offsets may be
+// shorter than Scene::bodies; what is absent has not moved).
+Sphere bounding_sphere(const Scene& scene, const Offsets& offsets = {});
 
 // The index of the movable body whose node has that name. Throws SceneError that lists the movable nodes.
 std::uint32_t find_body(const Scene& scene, const std::string& node);
-
-// Checks the atlas at size * size texels: throws SceneError that names the charts that overlap and how many texels
-// they share, or that no texel is covered at all. Returns the number of valid texels (centre on a chart).
-std::uint32_t check_atlas(const Scene& scene, std::uint32_t size);
 
 }  // namespace lichtveld::scene

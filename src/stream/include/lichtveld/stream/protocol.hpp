@@ -14,24 +14,26 @@
 #include <string_view>
 #include <vector>
 
-#include "lichtveld/stream/server.hpp"
+#include "lichtveld/stream/map.hpp"
+#include "lichtveld/stream/place.hpp"
 
 namespace lichtveld::stream {
 
 // The channel's label; its sub-protocol is empty in version 1.
 inline constexpr std::string_view channel_label = "lichtveld";
 
-// Bytes of PNG in one message. 16 KiB is what every WebRTC implementation takes; one message blocks those
+// Bytes of a map in one message. 16 KiB is what every WebRTC implementation takes; one message blocks those
 // behind it, so a places message never waits for more than this in our own queue.
 inline constexpr std::size_t map_chunk = 16 * 1024;
 
-inline constexpr std::string_view map_complete = "PNG_TRANSFER_COMPLETE";
+// The text after a map's last chunk, by which a client also knows its format.
+std::string_view map_complete(MapFormat format);
 
 // The longest message that a client may send [bytes]; the longest that means something has five.
 inline constexpr std::size_t max_client_message = 64;
 
-// The chunk of `png` that starts at `offset` (at most map_chunk bytes; empty at or past the end).
-std::span<const std::uint8_t> chunk_at(std::span<const std::uint8_t> png, std::size_t offset);
+// The chunk of a map that starts at `offset` (at most map_chunk bytes; empty at or past the end).
+std::span<const std::uint8_t> chunk_at(std::span<const std::uint8_t> map, std::size_t offset);
 
 // "x1!y1/x2!y2": plain decimals (no exponent, a point in every locale), the shortest that read back as the same
 // float; one entry a cube, in order; empty without cubes, and then there is nothing to send. Throws

@@ -5,41 +5,14 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <span>
 #include <string>
 #include <vector>
 
+#include "lichtveld/stream/map.hpp"
+#include "lichtveld/stream/place.hpp"
+#include "lichtveld/stream/work.hpp"
+
 namespace lichtveld::stream {
-
-// A cube's place in the scene's x, y plane [m].
-struct Place {
-  float x = 0, y = 0;
-  bool operator==(const Place&) const = default;
-};
-
-enum class Move { up, down, left, right };
-
-// What a part of the work has taken since the start; signaling shows it in /metrics.
-struct WorkTime {
-  std::string name;  // lower-case letters and underscores, up to 32
-  std::uint64_t runs = 0;
-  double seconds = 0;  // summed over the runs
-  bool operator==(const WorkTime&) const = default;
-};
-
-// The same of things that are only counted.
-struct WorkCount {
-  std::string name;  // as in WorkTime
-  std::uint64_t value = 0;
-  bool operator==(const WorkCount&) const = default;
-};
-
-// Of the stages that a map goes through, and of the passes of one of them.
-struct Work {
-  std::vector<WorkTime> stages, passes;
-  std::vector<WorkCount> counts;
-  bool operator==(const Work&) const = default;
-};
 
 struct ServerOptions {
   std::string signaling;  // ws://HOST[:PORT]/server
@@ -85,12 +58,11 @@ class Server {
   Server(const Server&) = delete;
   Server& operator=(const Server&) = delete;
 
-  // The newest map, an encoded PNG, with the places that it shows. It is kept for joiners and sent to every
-  // peer that is ready; a peer that is still receiving gets the newest one when it is done. A peer is told the
-  // places of the map that it was sent last (before its first one, the cubes' places of now), so that cubes and
-  // light agree on its screen. Returns at once. Thread-safe. Throws std::invalid_argument for a PNG without
-  // bytes and a place that is not finite.
-  void publish(std::vector<std::uint8_t> png, std::vector<Place> places);
+  // The newest map. It is kept for joiners and sent to every peer that is ready; a peer that is still receiving
+  // gets the newest one when it is done. A peer is told the places of the map that it was sent last (before its
+  // first one, the cubes' places of now), so that cubes and light agree on its screen. Returns at once.
+  // Thread-safe. Throws std::invalid_argument for a map without bytes and a place that is not finite.
+  void publish(EncodedMap map);
 
   ServerStatistics statistics() const;  // thread-safe
 

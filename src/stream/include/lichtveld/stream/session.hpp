@@ -6,7 +6,7 @@
 #include <functional>
 #include <vector>
 
-#include "lichtveld/stream/server.hpp"
+#include "lichtveld/stream/place.hpp"
 
 namespace lichtveld::stream {
 

@@ -1,0 +1,128 @@
+#include "core/texel_records.hpp"
+
+#include <algorithm>
+
+#include "lichtveld/scene/atlas.hpp"
+#include "shared.h"
+
+namespace lichtveld::lightfield {
+
+namespace {
+
+// Atlas texels a side of a block that is numbered together.
+constexpr std::uint32_t block = 8;
+
+// Calls each(atlas texel): block by block, within a block in Morton order, so that any run of numbers is nearly
+// square.
+template <typename Each>
+void in_blocks(std::uint32_t size, const Each& each) {
+  for (std::uint32_t top = 0; top < size; top += block)
+    for (std::uint32_t left = 0; left < size; left += block)
+      for (std::uint32_t code = 0; code < block * block; ++code) {
+        const std::uint32_t x = left + (code & 1) + (code >> 1 & 2) + (code >> 2 & 4),
+                            y = top + (code >> 1 & 1) + (code >> 2 & 2) + (code >> 3 & 4);
+        if (x < size && y < size) each(y * size + x);
+      }
+}
+
+std::vector<std::uint32_t> surface_of_triangles(const scene::Scene& scene) {
+  std::vector<std::uint32_t> surfaces(scene.indices.size() / 3);
+  for (std::uint32_t surface = 0; surface < scene.surfaces.size(); ++surface) {
+    const auto first = scene.surfaces[surface].first_index / 3, count = scene.surfaces[surface].index_count / 3;
+    std::fill_n(surfaces.begin() + first, count, surface);
+  }
+  return surfaces;
+}
+
+TexelRecord record_of(const scene::Scene& scene, std::uint32_t size, const scene::AtlasTexel& texel,
+                      std::uint32_t surface_index) {
+  const auto& surface = scene.surfaces[surface_index];
+  const auto& material = scene.materials[surface.material];
+  const auto corner = [&](std::size_t k) -> const scene::Vertex& {
+    return scene.vertices[scene.indices[std::size_t{3} * texel.at.triangle + k]];
+  };
+  const scene::Vertex &a = corner(0), &b = corner(1), &c = corner(2);
+  const glm::vec3 w = scene::weights(texel.at);
+  const glm::vec3 cross = glm::cross(b.position - a.position, c.position - a.position);
+  const glm::vec3 face = glm::length(cross) > 0 ? glm::normalize(cross) : glm::vec3(0);
+  const glm::vec3 normal = w.x * a.normal + w.y * b.normal + w.z * c.normal;
+  const glm::vec3 facing = glm::dot(face, normal) < 0 ? -face : face;
+  const float length = glm::length(normal);
+  // Metres a texel along the atlas' u and v: the triangle's edges are these times the edges of its chart.
+  const glm::mat2 chart(b.atlas - a.atlas, c.atlas - a.atlas);
+  const glm::mat2x3 along = glm::mat2x3(b.position - a.position, c.position - a.position) * glm::inverse(chart);
+  return {.position = w.x * a.position + w.y * b.position + w.z * c.position,
+          .normal = length > 0 ? normal / length : facing,
+          .face = facing,
+          .albedo = scene::albedo_at(scene, material, texel.at),
+          .emission = material.emission,
+          .side = std::max(glm::length(along[0]), glm::length(along[1])) / static_cast<float>(size),
+          .triangle = texel.at.triangle,
+          .surface = surface_index,
+          .body = surface.body,
+          .atlas = texel.index};
+}
+
+std::vector<TexelRecord> records_of(const scene::Scene& scene, std::uint32_t size) {
+  const auto surfaces = surface_of_triangles(scene);
+  const auto texels = scene::valid_texels(scene, size);
+  std::vector<const scene::AtlasTexel*> at(std::size_t{size} * size, nullptr);
+  for (const auto& texel : texels) at[texel.index] = &texel;
+  std::vector<TexelRecord> records;
+  records.reserve(texels.size());
+  float brightest = 0;
+  in_blocks(size, [&](std::uint32_t atlas) {
+    if (at[atlas] == nullptr) return;
+    records.push_back(record_of(scene, size, *at[atlas], surfaces[at[atlas]->at.triangle]));
+    brightest = std::max(brightest, Lamps::strength(records.back().emission));
+  });
+  std::ranges::stable_partition(
+      records, [&](const TexelRecord& record) { return Lamps::is_lamp(record.emission, brightest); });
+  return records;
+}
+
+std::vector<glm::vec3> emissions_of(const std::vector<TexelRecord>& records) {
+  std::vector<glm::vec3> emissions;
+  for (const auto& record : records) emissions.push_back(record.emission);
+  return emissions;
+}
+
+// The nearest of `own` around an atlas texel that has none, within the gutter's width.
+std::uint32_t nearest(const std::vector<std::uint32_t>& own, std::uint32_t size, int x, int y) {
+  const int side = static_cast<int>(size);
+  std::uint32_t found = no_record;
+  int best = std::numeric_limits<int>::max();
+  for (int dy = -shaders::GUTTER; dy <= shaders::GUTTER; ++dy)
+    for (int dx = -shaders::GUTTER; dx <= shaders::GUTTER; ++dx) {
+      const int u = x + dx, v = y + dy, distance_squared = dx * dx + dy * dy;
+      if (distance_squared >= best || u < 0 || v < 0 || u >= side || v >= side) continue;
+      const auto record = own[static_cast<std::size_t>(v) * size + static_cast<std::size_t>(u)];
+      if (record == no_record) continue;
+      best = distance_squared;
+      found = record;
+    }
+  return found;
+}
+
+std::vector<std::uint32_t> sources_of(const std::vector<TexelRecord>& records, std::uint32_t size) {
+  std::vector<std::uint32_t> own(std::size_t{size} * size, no_record);
+  for (std::uint32_t number = 0; number < records.size(); ++number) own[records[number].atlas] = number;
+  auto source = own;
+  for (std::uint32_t atlas = 0; atlas < source.size(); ++atlas)
+    if (own[atlas] == no_record)
+      source[atlas] = nearest(own, size, static_cast<int>(atlas % size), static_cast<int>(atlas / size));
+  return source;
+}
+
+}  // namespace
+
+TexelRecords::TexelRecords(const scene::Scene& scene, std::uint32_t size)
+    : size_(size),
+      records_(records_of(scene, size)),
+      lamps_(emissions_of(records_)),
+      source_(sources_of(records_, size)) {
+  for (const auto& record : records_)
+    highest_albedo_ = std::max({highest_albedo_, record.albedo.r, record.albedo.g, record.albedo.b});
+}
+
+}  // namespace lichtveld::lightfield

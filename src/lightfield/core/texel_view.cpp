@@ -1,0 +1,19 @@
+#include "lichtveld/lightfield/texel_view.hpp"
+
+#include "lichtveld/gpu/transfer.hpp"
+
+namespace lichtveld::lightfield {
+
+std::vector<glm::vec4> TexelView::on_host() const {
+  if (image_ != nullptr) return gpu::download<glm::vec4>(*device_, *image_);
+  return {host_.begin(), host_.end()};
+}
+
+void TexelView::copy_to(const gpu::Device& device, const gpu::Image& image) const {
+  if (image_ != nullptr)
+    gpu::fill<glm::vec4>(device, image, on_host());
+  else
+    gpu::fill<glm::vec4>(device, image, host_);
+}
+
+}  // namespace lichtveld::lightfield

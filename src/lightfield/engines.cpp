@@ -1,0 +1,43 @@
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+
+#include "lichtveld/lightfield/engine.hpp"
+#include "links/links.hpp"
+#include "thesis/thesis.hpp"
+
+namespace lichtveld::lightfield {
+
+namespace {
+
+template <typename Field>
+std::unique_ptr<LightField> make(const gpu::Device& device, const scene::Scene& scene,
+                                 const Settings& settings) {
+  return std::make_unique<Field>(device, scene, settings);
+}
+
+constexpr std::array all = {
+    Engine{"thesis", "every PSF rendered afresh in every bounce", make<Thesis>},
+    Engine{"links", "what each texel sees is kept, a move redoes only what it touched", make<Links>},
+};
+
+}  // namespace
+
+std::span<const Engine> engines() {
+  return all;
+}
+
+const Engine& engine(std::string_view name) {
+  const auto found = std::ranges::find(all, name, [](const Engine& one) { return std::string_view(one.name); });
+  if (found != all.end()) return *found;
+  std::string names;
+  for (const auto& one : all) names += (names.empty() ? "" : ", ") + std::string(one.name);
+  throw std::invalid_argument("no engine is called " + std::string(name) + "; there are: " + names);
+}
+
+std::unique_ptr<LightField> make_light_field(std::string_view name, const gpu::Device& device,
+                                             const scene::Scene& scene, const Settings& settings) {
+  return engine(name).make(device, scene, settings);
+}
+
+}  // namespace lichtveld::lightfield

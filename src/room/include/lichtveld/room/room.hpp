@@ -1,0 +1,66 @@
+// The live room: places in, maps out. It knows a scene, its light and the newest places; players, sockets and
+// files are others' business.
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <memory>
+
+#include "lichtveld/lightfield/light_field.hpp"
+#include "lichtveld/room/places.hpp"
+#include "lichtveld/room/work.hpp"
+#include "lichtveld/scene/scene.hpp"
+
+namespace lichtveld::room {
+
+// Here is a map: what is to be shown, and the places that it shows.
+struct Map {
+  lightfield::Shown shown;
+  Places places;
+};
+
+struct Options {
+  double rate = 30;  // most maps a second, above 0
+  // Where maps go, one after the other, on a thread of the room's own, while the next one is computed: to be
+  // encoded and sent. What it throws ends run().
+  std::function<void(Map map)> publish;
+  // Asked between maps, on run()'s thread: true ends it. May be empty.
+  std::function<bool()> ended = {};
+};
+
+class Room {
+ public:
+  // The scene and what the light field uses must outlive it. Throws std::invalid_argument for options that make
+  // no sense.
+  Room(const scene::Scene& scene, std::unique_ptr<lightfield::LightField> light, Options options);
+  ~Room();
+  Room(const Room&) = delete;
+  Room& operator=(const Room&) = delete;
+
+  // Publishes the map with all bodies at rest, of all its light. On the thread that uses the device, as run().
+  void begin();
+
+  // Follows the newest places until stop(): a map as soon as somebody has moved, then a few more until the
+  // light has settled, then none. Throws what the light field or `publish` throws.
+  void run();
+
+  // Where the bodies are now; of what comes while a map is made the newest counts. Thread-safe, and never
+  // waits.
+  void place(Places places);
+  // Ends run() after the map that is being made, and makes a begin() that is under way end early. Thread-safe.
+  void stop();
+
+  // No map is published any more: returns when the one under way has been.
+  void close();
+
+  // Where body `index` of `places` gets with a step. Thread-safe.
+  glm::vec3 stepped(const Places& places, std::size_t index, Direction direction);
+
+  Work work() const;  // thread-safe
+
+ private:
+  class Pipeline;
+  std::unique_ptr<Pipeline> pipeline_;
+};
+
+}  // namespace lichtveld::room

@@ -1,0 +1,23 @@
+// A place on the surfaces, and what is there.
+#pragma once
+
+#include "lichtveld/scene/scene.hpp"
+
+namespace lichtveld::scene {
+
+struct SurfacePoint {
+  std::uint32_t triangle;  // of Scene::indices
+  glm::vec2 barycentric;   // weighs the triangle's second and third corner
+};
+
+// Of the three corners; they sum to 1.
+glm::vec3 weights(const SurfacePoint& point);
+
+// Linear RGB, decoded from sRGB before the bilinear filter, as graphics hardware does it; repeating. `at` is
+// glTF's texture coordinate: (0, 0) is the upper left corner of the first pixel.
+glm::vec3 sample_srgb(const Texture& texture, glm::vec2 at);
+
+// What a surface of that material reflects there: 0..1, linear.
+glm::vec3 albedo_at(const Scene& scene, const Material& material, const SurfacePoint& point);
+
+}  // namespace lichtveld::scene

@@ -1,0 +1,22 @@
+// A light map as it travels.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "lichtveld/stream/place.hpp"
+
+namespace lichtveld::stream {
+
+// How a map's bytes are to be read. What closes one on the wire: map_complete() in protocol.hpp.
+enum class MapFormat {
+  png,  // RGB of 8 bits, sRGB (encoder.hpp)
+};
+
+struct EncodedMap {
+  MapFormat format = MapFormat::png;
+  std::vector<std::uint8_t> bytes;
+  std::vector<Place> places = {};  // that it shows
+};
+
+}  // namespace lichtveld::stream
