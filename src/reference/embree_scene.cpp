@@ -12,13 +12,13 @@ namespace {
 // face, so that what lies on it is in front. Coinciding faces and the places of rays on them are rounded apart
 // by some 1e-7 (32-bit coordinates in the unit sphere), and receivers are lifted by 1e-6. The start lies on the
 // ray's own line: that way no ray slips below the wall that a floor ends at.
-constexpr float kBehind = 3e-6f;
+constexpr float start_behind = 3e-6f;
 // Rays that graze start no farther back than at this cosine. They carry 1e-4 of the light.
-constexpr float kGrazing = 0.01f;
+constexpr float grazing_cosine = 0.01f;
 
 // A surface lies on the receiver if their faces look at each other within this cosine. Others that a ray meets
 // before its receiver, such as the outside of a thin wall beside it, are behind it.
-constexpr float kFacing = 0.99f;
+constexpr float facing_cosine = 0.99f;
 
 // What the filter needs to know about a ray.
 struct Query : QueryContext {
@@ -40,7 +40,7 @@ void refuse_unseen(const RTCFilterFunctionNArguments* arguments) {
                             RTCRayN_dir_y(arguments->ray, arguments->N, 0),
                             RTCRayN_dir_z(arguments->ray, arguments->N, 0));
   const bool before_receiver = RTCRayN_tfar(arguments->ray, arguments->N, 0) <= query.behind;
-  const bool lies_on_it = glm::dot(query.geometry.face(triangle), query.from.face) < -kFacing;
+  const bool lies_on_it = glm::dot(query.geometry.face(triangle), query.from.face) < -facing_cosine;
   if (triangle == query.from.triangle || query.geometry.is_transparent(triangle, direction) ||
       (before_receiver && !lies_on_it))
     arguments->valid[0] = 0;
@@ -88,7 +88,7 @@ EmbreeScene::EmbreeScene(const Geometry& geometry)
 }
 
 std::optional<Hit> EmbreeScene::nearest(const Receiver& from, const glm::vec3& direction) const {
-  const float back = kBehind / std::max(glm::dot(direction, from.face), kGrazing);
+  const float back = start_behind / std::max(glm::dot(direction, from.face), grazing_cosine);
   const glm::vec3 start = from.position - back * direction;
   RTCRayHit ray{};
   ray.ray.org_x = start.x;

@@ -8,8 +8,8 @@ namespace {
 // Places are moved this far towards the middle of their triangle, and receivers lifted half as far off it: a
 // path that starts on an edge shared with a wall could, by rounding, start behind that wall. Coordinates in the
 // unit sphere are rounded by up to 6e-8.
-constexpr float kInset = 2e-6f;
-constexpr float kLift = 1e-6f;
+constexpr float inset = 2e-6f;
+constexpr float lift = 1e-6f;
 
 }  // namespace
 
@@ -48,7 +48,7 @@ glm::vec3 Geometry::position(const Hit& hit) const {
   const glm::vec3 w = scene::weights(hit);
   const glm::vec3 &a = corner(hit.triangle, 0), &b = corner(hit.triangle, 1), &c = corner(hit.triangle, 2);
   const glm::vec3 at = w.x * a + w.y * b + w.z * c, to_middle = (a + b + c) / 3.0f - at;
-  return at + to_middle * (kInset / std::max(glm::length(to_middle), kInset));
+  return at + to_middle * (inset / std::max(glm::length(to_middle), inset));
 }
 
 glm::vec3 Geometry::albedo(const Hit& hit) const {
@@ -78,7 +78,7 @@ Receiver Geometry::receiver_seen(const Hit& hit, const glm::vec3& direction) con
 Receiver Geometry::receiver(const Hit& hit, const glm::vec3& normal) const {
   const glm::vec3 face =
       glm::dot(normal, faces_[hit.triangle]) < 0 ? -faces_[hit.triangle] : faces_[hit.triangle];
-  return {position(hit) + kLift * face, normal, face, hit.triangle};
+  return {position(hit) + lift * face, normal, face, hit.triangle};
 }
 
 }  // namespace lichtveld::reference

@@ -16,9 +16,9 @@ constexpr float pi = std::numbers::pi_v<float>;
 
 // Paths without a limit run this many segments before chance may end them: the first few carry most of the
 // light.
-constexpr std::uint32_t kSureSegments = 3;
+constexpr std::uint32_t sure_segments = 3;
 // Chance ends them at least this often, so that they end even between surfaces that lose nothing.
-constexpr float kMostSurvivors = 0.95f;
+constexpr float most_survivors = 0.95f;
 
 // The power heuristic with exponent 2: Veach 1997, section 9.2.3. `density` is not 0; the other may be without
 // end.
@@ -65,9 +65,9 @@ glm::vec3 PathTracer::irradiance(Receiver at, Sampler& sampler, RayCount& count)
     share *= geometry_.albedo(*hit);
     const float most = std::max({share.r, share.g, share.b});
     if (most <= 0) return sum;
-    if (!bounces_ && segment >= kSureSegments) {
+    if (!bounces_ && segment >= sure_segments) {
       // Russian roulette: Arvo and Kirk 1990, "Particle Transport and Image Synthesis", section 4.
-      const float survivors = std::min(most, kMostSurvivors);
+      const float survivors = std::min(most, most_survivors);
       if (sampler.pair().x >= survivors) return sum;
       share /= survivors;
     }

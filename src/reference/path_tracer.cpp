@@ -20,7 +20,7 @@ namespace {
 
 // Independent estimates a texel: the points of one batch are stratified, so that only batches against each
 // other tell the error. 16 know it to 18 % (a chi distribution with 15 degrees of freedom).
-constexpr std::uint32_t kBatches = 16;
+constexpr std::uint32_t most_batches = 16;
 
 struct Estimate {
   glm::vec3 irradiance;
@@ -29,9 +29,9 @@ struct Estimate {
 
 Estimate estimate(const PathTracer& tracer, const Receiver& texel, std::uint32_t index,
                   const Settings& settings, RayCount& count) {
-  const std::uint32_t batches = std::min(kBatches, settings.spp);
+  const std::uint32_t batches = std::min(most_batches, settings.spp);
   glm::dvec3 sum(0);
-  std::array<double, kBatches> means, paths;
+  std::array<double, most_batches> means, paths;
   for (std::uint32_t batch = 0; batch < batches; ++batch) {
     Sampler sampler(settings.seed, index, batch);
     const std::uint32_t in_batch = settings.spp / batches + (batch < settings.spp % batches ? 1 : 0);

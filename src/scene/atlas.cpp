@@ -11,7 +11,7 @@
 namespace lichtveld::scene {
 namespace {
 
-constexpr std::uint32_t kMaxSize = 16384;
+constexpr std::uint32_t max_size = 16384;
 
 // A chart's triangle as three half-planes n.(u, v) + d >= 0 with unit normals that point inwards.
 struct ChartTriangle {
@@ -73,14 +73,14 @@ std::string describe(const Overlaps& overlaps) {
 }  // namespace
 
 std::uint32_t check_atlas(const Scene& scene, std::uint32_t size) {
-  if (size < 1 || size > kMaxSize)
+  if (size < 1 || size > max_size)
     throw SceneError("atlas size " + std::to_string(size) + " is outside 1..16384");
   const std::int64_t n = size;
   // Neighbours in a chart meet at edges whose ends were rounded to 32 bits, up to 6e-8 of the atlas: a centre
   // within this distance of an edge is shared by nobody.
   const double margin = 1e-3 / size + 2.5e-7;
-  constexpr std::uint32_t kNone = ~0u;
-  std::vector<std::uint32_t> owner(std::size_t{size} * size, kNone);  // surface whose triangle holds the centre
+  constexpr std::uint32_t no_owner = ~0u;
+  std::vector<std::uint32_t> owner(std::size_t{size} * size, no_owner);  // surface whose triangle holds the centre
   Overlaps overlaps;
   std::uint64_t shared = 0;
   // Enough to describe the damage; a hostile file could stack millions of charts on each other.
@@ -97,7 +97,7 @@ std::uint32_t check_atlas(const Scene& scene, std::uint32_t size) {
         const auto [begin, end] = row_span(*triangle, j, n, margin);
         for (std::int64_t i = begin; i < end; ++i) {
           std::uint32_t& held = owner[static_cast<std::size_t>(j * n + i)];
-          if (held == kNone) {
+          if (held == no_owner) {
             held = s;
             continue;
           }

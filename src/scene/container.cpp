@@ -12,10 +12,10 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int kMaxNesting = 64;  // JSON levels; tinygltf recurses into extras, exporters need < 20
-constexpr std::size_t kMaxJsonBytes = 64u << 20;   // a parsed document takes several times its text
-constexpr std::size_t kMaxBufferBytes = 1u << 30;  // over all buffers
-constexpr std::array kKnownExtensions = {"KHR_materials_emissive_strength"};
+constexpr int max_nesting = 64;  // JSON levels; tinygltf recurses into extras, exporters need < 20
+constexpr std::size_t max_json_bytes = 64u << 20;   // a parsed document takes several times its text
+constexpr std::size_t max_buffer_bytes = 1u << 30;  // over all buffers
+constexpr std::array known_extensions = {"KHR_materials_emissive_strength"};
 
 std::uint32_t little_endian(std::span<const std::uint8_t> bytes, std::size_t at) {
   return bytes[at] | bytes[at + 1] << 8 | bytes[at + 2] << 16 | std::uint32_t{bytes[at + 3]} << 24;
@@ -43,9 +43,9 @@ std::span<const std::uint8_t> json_chunk(std::span<const std::uint8_t> bytes) {
 }
 
 json parse(std::span<const std::uint8_t> text) {
-  if (text.size() > kMaxJsonBytes) throw SceneError("its JSON is larger than 64 MiB");
+  if (text.size() > max_json_bytes) throw SceneError("its JSON is larger than 64 MiB");
   const auto limit_nesting = [](int depth, json::parse_event_t, json&) {
-    if (depth > kMaxNesting) throw SceneError("its JSON nests deeper than 64 levels");
+    if (depth > max_nesting) throw SceneError("its JSON nests deeper than 64 levels");
     return true;
   };
   try {
@@ -100,7 +100,7 @@ void check_extensions(const json& root) {
   std::string unknown;
   for (const json& name : *found) {
     const std::string text = name.is_string() ? name.get<std::string>() : name.dump();
-    if (std::ranges::find(kKnownExtensions, text) == kKnownExtensions.end())
+    if (std::ranges::find(known_extensions, text) == known_extensions.end())
       unknown += (unknown.empty() ? "" : ", ") + text;
   }
   if (!unknown.empty()) {
@@ -125,7 +125,7 @@ void check_container(std::span<const std::uint8_t> bytes) {
     // Each such buffer would be a copy of the whole binary chunk.
     if (!buffers[i].contains("uri") && (!binary || i > 0)) throw SceneError(what + " has no uri");
     const std::uint64_t length = bytes_of(buffers[i], "byteLength", what);
-    if (length > kMaxBufferBytes || (total += length) > kMaxBufferBytes) {
+    if (length > max_buffer_bytes || (total += length) > max_buffer_bytes) {
       throw SceneError(what + ": the scene's buffers are larger than 1 GiB together");
     }
   }

@@ -12,7 +12,7 @@ namespace lichtveld::scene {
 namespace {
 
 // 64 triangles a texel of a 256 x 256 atlas, and 1 GB at worst: more is a mistake.
-constexpr std::size_t kMaxTriangles = std::size_t{1} << 22;
+constexpr std::size_t max_triangles = std::size_t{1} << 22;
 
 std::vector<Body> find_bodies(const tinygltf::Model& model, const std::vector<PlacedNode>& nodes,
                               std::map<int, std::uint32_t>& body_of) {
@@ -47,7 +47,7 @@ std::vector<Piece> read_pieces(const tinygltf::Model& model, const Materials& ma
   std::map<int, std::uint32_t> body_of{{-1, 0}};
   scene.bodies = find_bodies(model, nodes, body_of);
   std::vector<Piece> pieces;
-  std::size_t triangles_left = kMaxTriangles;
+  std::size_t triangles_left = max_triangles;
   for (const PlacedNode& placed : nodes) {
     const tinygltf::Node& node = model.nodes[static_cast<std::size_t>(placed.node)];
     if (node.mesh == -1) continue;

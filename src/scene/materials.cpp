@@ -11,9 +11,9 @@
 namespace lichtveld::scene {
 namespace {
 
-constexpr std::size_t kMaxPixels = std::size_t{1} << 26;  // over all textures: 256 MiB of RGBA
+constexpr std::size_t max_pixels = std::size_t{1} << 26;  // over all textures: 256 MiB of RGBA
 
-constexpr const char* kEmissiveStrength = "KHR_materials_emissive_strength";
+constexpr const char* strength_extension = "KHR_materials_emissive_strength";
 
 // Where an image's encoded bytes lie. The buffer views were checked against their buffers before.
 std::span<const unsigned char> encoded(const tinygltf::Model& model, const tinygltf::Image& image) {
@@ -34,7 +34,7 @@ glm::vec3 colour(const std::vector<double>& rgb, double scale, double most, cons
 }
 
 double emissive_strength(const tinygltf::Material& material, const std::string& what) {
-  const auto found = material.extensions.find(kEmissiveStrength);
+  const auto found = material.extensions.find(strength_extension);
   if (found == material.extensions.end()) return 1;
   const tinygltf::Value& strength = found->second.Get("emissiveStrength");
   if (!strength.IsNumber()) throw SceneError(what + ": emissiveStrength is no number");
@@ -71,7 +71,7 @@ class TextureReader {
   const tinygltf::Model& model_;
   std::vector<Texture>& textures_;
   std::map<int, int> read_;  // image -> texture
-  std::size_t pixels_left_ = kMaxPixels;
+  std::size_t pixels_left_ = max_pixels;
 };
 
 }  // namespace
@@ -87,7 +87,7 @@ Materials read_materials(const tinygltf::Model& model) {
     const std::string what = "material \"" + out.name + "\"";
     out.base_colour = colour(pbr.baseColorFactor, 1, 1, what + ": baseColorFactor");
     out.emission = colour(in.emissiveFactor, emissive_strength(in, what), 1e6,
-                          what + ": emissiveFactor * " + kEmissiveStrength);
+                          what + ": emissiveFactor * " + strength_extension);
     out.double_sided = in.doubleSided;
     int set = -1;
     if (pbr.baseColorTexture.index != -1) {

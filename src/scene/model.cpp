@@ -13,13 +13,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uintmax_t kMaxFileBytes =
+constexpr std::uintmax_t max_file_bytes =
     1u << 30;  // a scene and all files beside it, each as often as it is named
 
 // The scene's folder, and how many bytes may still be read from it.
 struct Folder {
   fs::path path;
-  std::uintmax_t budget = kMaxFileBytes;
+  std::uintmax_t budget = max_file_bytes;
 };
 
 std::vector<std::uint8_t> read_file(const fs::path& file, std::uintmax_t limit) {
@@ -95,7 +95,7 @@ Callbacks callbacks_beside(Folder& folder) {
 }  // namespace
 
 tinygltf::Model read_model(const fs::path& file) {
-  const std::vector<std::uint8_t> bytes = read_file(file, kMaxFileBytes);
+  const std::vector<std::uint8_t> bytes = read_file(file, max_file_bytes);
   check_container(bytes);
 
   Folder folder{file.has_parent_path() ? file.parent_path() : fs::path(".")};

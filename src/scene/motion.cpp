@@ -16,7 +16,7 @@ namespace {
 
 // Boxes are shrunken by this share of a step on each side, so that touching is no overlap. It is far above the
 // rounding of 32-bit places and far below what a player sees.
-constexpr double kSkin = 1e-3;
+constexpr double skin_share = 1e-3;
 
 struct Mover {
   glm::dvec3 centre, half, step;  // of the shrunken box; step and all lengths in metres
@@ -74,13 +74,14 @@ class Sweep {
   bool deepens_ = false;
 };
 
-constexpr std::array<glm::dvec3, 3> kAxes = {glm::dvec3{1, 0, 0}, glm::dvec3{0, 1, 0}, glm::dvec3{0, 0, 1}};
+constexpr std::array<glm::dvec3, 3> scene_axes = {glm::dvec3{1, 0, 0}, glm::dvec3{0, 1, 0},
+                                                  glm::dvec3{0, 0, 1}};
 
 double free_share(const Mover& mover, const std::array<glm::dvec3, 3>& triangle) {
   const std::array edges = {triangle[1] - triangle[0], triangle[2] - triangle[1], triangle[0] - triangle[2]};
   Sweep sweep(mover);
   sweep.axis(glm::cross(edges[0], edges[1]), triangle);
-  for (const glm::dvec3& axis : kAxes) {
+  for (const glm::dvec3& axis : scene_axes) {
     sweep.axis(axis, triangle);
     for (const glm::dvec3& edge : edges) sweep.axis(glm::cross(axis, edge), triangle);
   }
@@ -90,7 +91,7 @@ double free_share(const Mover& mover, const std::array<glm::dvec3, 3>& triangle)
 double free_share(const Mover& mover, const Box& box, const glm::dvec3& offset) {
   const std::array corners = {glm::dvec3(box.min) + offset, glm::dvec3(box.max) + offset};
   Sweep sweep(mover);
-  for (const glm::dvec3& axis : kAxes) sweep.axis(axis, corners);
+  for (const glm::dvec3& axis : scene_axes) sweep.axis(axis, corners);
   return sweep.free_share();
 }
 
@@ -106,7 +107,7 @@ glm::vec3 free_step(const Scene& scene, const Offsets& offsets, std::uint32_t bo
 
   const Box& box = scene.bodies.at(body).box;
   const glm::dvec3 centre = (glm::dvec3(box.min) + glm::dvec3(box.max)) / 2.0 + glm::dvec3(offsets.at(body));
-  const double skin = kSkin * step_length(scene);
+  const double skin = skin_share * step_length(scene);
   const glm::dvec3 half = glm::max((glm::dvec3(box.max) - glm::dvec3(box.min)) / 2.0 - skin, glm::dvec3(0));
   const Mover mover{centre, half, step, skin};
 

@@ -15,13 +15,13 @@ using Triangle = std::array<std::uint32_t, 3>;  // elements of the primitive's a
 
 // A triangle whose height is less than this share of its longest edge has no normal worth the name: a 32-bit
 // coordinate as long as the edge is rounded by as much.
-constexpr double kFlat = 1e-7;
+constexpr double flat_share = 1e-7;
 
 // How far an exporter's rounding may push a TEXCOORD_1 out of the unit square; it is pulled back.
-constexpr float kAtlasRounding = 1e-5f;
+constexpr float atlas_rounding = 1e-5f;
 
 // Farther out, 32-bit positions are coarser than 6 cm; such scenes have their unit wrong.
-constexpr double kMaxCoordinate = 1e6;
+constexpr double max_coordinate = 1e6;
 
 std::vector<Triangle> triangles_of(const tinygltf::Primitive& primitive, const std::optional<Accessor>& indices,
                                    std::size_t vertices, std::size_t max_triangles, const std::string& what) {
@@ -79,7 +79,7 @@ glm::vec3 world_position(const Accessor& positions, std::uint32_t i, const glm::
                          const std::string& what) {
   const glm::dvec3 p = world * glm::dvec4(positions.vec3(i), 1);
   for (int c = 0; c < 3; ++c) {
-    if (!(std::abs(p[c]) <= kMaxCoordinate)) {
+    if (!(std::abs(p[c]) <= max_coordinate)) {
       throw SceneError(what + ": vertex " + std::to_string(i) +
                        " is not finite or more than 1000 km away; positions are "
                        "in metres");
@@ -90,7 +90,7 @@ glm::vec3 world_position(const Accessor& positions, std::uint32_t i, const glm::
 
 glm::vec2 atlas_coordinate(const Accessor& atlas, std::uint32_t i, const std::string& what) {
   const glm::vec2 uv = atlas.vec2(i), inside = glm::clamp(uv, 0.0f, 1.0f);
-  if (!(glm::distance(uv, inside) <= kAtlasRounding)) {
+  if (!(glm::distance(uv, inside) <= atlas_rounding)) {
     throw SceneError(what + ": TEXCOORD_1 of vertex " + std::to_string(i) + " is (" + std::to_string(uv.x) +
                      ", " + std::to_string(uv.y) +
                      "), outside 0..1: pack the light-map charts into the unit square");
@@ -172,7 +172,7 @@ std::vector<std::uint32_t> add_primitive(const tinygltf::Model& model, const tin
     const glm::dvec3 a = glm::dvec3(p[1]) - glm::dvec3(p[0]), b = glm::dvec3(p[2]) - glm::dvec3(p[0]);
     const glm::dvec3 cross = glm::cross(a, b);
     const double longest = std::max({glm::dot(a, a), glm::dot(b, b), glm::dot(b - a, b - a)});
-    if (glm::length(cross) <= kFlat * longest) {
+    if (glm::length(cross) <= flat_share * longest) {
       ++oddities.zero_area;
       continue;
     }

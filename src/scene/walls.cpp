@@ -8,7 +8,7 @@ namespace lichtveld::scene {
 namespace {
 
 // Neighbours that bend by less are one curved surface: cosine of 45 degrees.
-constexpr float kSmooth = 0.7071f;
+constexpr float smooth_cosine = 0.7071f;
 
 struct Triangle {
   std::array<glm::dvec3, 3> corners;
@@ -84,7 +84,7 @@ Walls find_walls(const Scene& scene, const std::vector<glm::vec3>& offsets, floa
       for (const auto index : by_x) {
         const Triangle& other = triangles[index];
         if (other.box.min.x > floor.box.max.x + reach) break;
-        if (!boxes_meet(floor.box, other.box, reach) || glm::dot(floor.normal, other.normal) > kSmooth)
+        if (!boxes_meet(floor.box, other.box, reach) || glm::dot(floor.normal, other.normal) > smooth_cosine)
           continue;
         const auto wall = wall_on(floor, other, gap);
         if (wall && boxes_meet(floor.box, {glm::min(wall->a, wall->b), glm::max(wall->a, wall->b)}, reach))

@@ -12,12 +12,12 @@ using testing::Chart;
 using testing::SceneBuilder;
 using testing::TempFolder;
 
-constexpr std::array<glm::vec3, 4> kQuad = {glm::vec3{-1, 0, 1}, {1, 0, 1}, {1, 0, -1}, {-1, 0, -1}};
+constexpr std::array<glm::vec3, 4> quad_corners = {glm::vec3{-1, 0, 1}, {1, 0, 1}, {1, 0, -1}, {-1, 0, -1}};
 
 Scene scene_with(const std::vector<std::pair<std::string, Chart>>& quads) {
   SceneBuilder builder;
   const int grey = builder.material(glm::vec3(0.5f));
-  for (const auto& [name, chart] : quads) builder.quad(name, kQuad, chart, grey);
+  for (const auto& [name, chart] : quads) builder.quad(name, quad_corners, chart, grey);
   const TempFolder folder;
   return load(folder.write("scene.glb", builder.glb()));
 }
@@ -56,7 +56,7 @@ TEST(SceneAtlas, OverlapsAreNamedAndCounted) {
 TEST(SceneAtlas, AChartOverlapsItself) {
   SceneBuilder builder;
   const std::vector<glm::vec2> folded = {{0, 1}, {1, 1}, {1, 0}, {1, 1}};
-  builder.mesh("folded", {kQuad.begin(), kQuad.end()}, folded, {0, 1, 2, 0, 2, 3},
+  builder.mesh("folded", {quad_corners.begin(), quad_corners.end()}, folded, {0, 1, 2, 0, 2, 3},
                builder.material(glm::vec3(1)));
   const TempFolder folder;
   EXPECT_THAT(atlas_error(load(folder.write("scene.glb", builder.glb())), 16),

@@ -26,7 +26,7 @@ json nested(int depth) {
   return depth ? json::array({nested(depth - 1)}) : json::array();
 }
 
-const std::vector<SpoiltCase> kCases = {
+const std::vector<SpoiltCase> spoilt_cases = {
     {"NoAtlas", [](auto& b) { attributes(b).erase("TEXCOORD_1"); },
      "node \"floor\", primitive 0 has no TEXCOORD_1: unwrap"},
     {"NoPosition", [](auto& b) { attributes(b).erase("POSITION"); }, "primitive 0 has no POSITION"},
@@ -190,7 +190,7 @@ TEST_F(SceneBadInput, TheUnspoiltSceneLoads) {
 }
 
 TEST_F(SceneBadInput, EachIsNamed) {
-  for (const SpoiltCase& bad : kCases) {
+  for (const SpoiltCase& bad : spoilt_cases) {
     SceneBuilder builder = sound();
     bad.spoil(builder);
     const std::string error = error_of_bytes(builder.glb());

@@ -13,7 +13,7 @@
 namespace lichtveld::scene {
 namespace {
 
-constexpr const char* kFile = LICHTVELD_SOURCE_DIR "/assets/cornell.glb";
+constexpr const char* cornell_file = LICHTVELD_SOURCE_DIR "/assets/cornell.glb";
 
 class SceneCornell : public ::testing::Test {
  protected:
@@ -46,7 +46,7 @@ class SceneCornell : public ::testing::Test {
     return sum;
   }
 
-  Scene scene_ = load(kFile);
+  Scene scene_ = load(cornell_file);
 };
 
 TEST_F(SceneCornell, HasTheTenNodesAndTwoCubes) {
@@ -113,8 +113,8 @@ TEST_F(SceneCornell, ChartsAlignToTexels) {
 
 // Charts are found as connected triangles; between the texels of two of them lie at least 2 + 2 others at 256.
 TEST_F(SceneCornell, GuttersAreTwoTexelsOnEverySide) {
-  constexpr int kSize = 256;
-  std::vector<int> chart_at(kSize * kSize, -1);
+  constexpr int side = 256;
+  std::vector<int> chart_at(side * side, -1);
   std::vector<glm::ivec4>
       charts;  // left, top, right, bottom: every chart is a rectangle, made of two triangles
   for (std::size_t first = 0; first < scene_.indices.size(); first += 6) {
@@ -129,12 +129,12 @@ TEST_F(SceneCornell, GuttersAreTwoTexelsOnEverySide) {
   EXPECT_EQ(charts.size(), 6u + 6 + 6 + 6 + 6);
   for (std::size_t c = 0; c < charts.size(); ++c) {
     const glm::ivec4 grown = charts[c] + glm::ivec4(-2, -2, 2, 2);
-    ASSERT_TRUE(grown.x >= 0 && grown.y >= 0 && grown.z <= kSize && grown.w <= kSize) << "chart " << c;
+    ASSERT_TRUE(grown.x >= 0 && grown.y >= 0 && grown.z <= side && grown.w <= side) << "chart " << c;
     for (int y = grown.y; y < grown.w; ++y) {
       for (int x = grown.x; x < grown.z; ++x) {
-        ASSERT_EQ(chart_at[static_cast<std::size_t>(y * kSize + x)], -1)
+        ASSERT_EQ(chart_at[static_cast<std::size_t>(y * side + x)], -1)
             << "chart " << c << " at " << x << ", " << y;
-        chart_at[static_cast<std::size_t>(y * kSize + x)] = static_cast<int>(c);
+        chart_at[static_cast<std::size_t>(y * side + x)] = static_cast<int>(c);
       }
     }
   }
@@ -148,7 +148,7 @@ TEST_F(SceneCornell, TheScriptWritesTheCommittedFile) {
     std::ifstream in(file, std::ios::binary);
     return std::string(std::istreambuf_iterator<char>(in), {});
   };
-  EXPECT_TRUE(bytes(out) == bytes(kFile)) << "run assets/make_cornell.py and commit cornell.glb";
+  EXPECT_TRUE(bytes(out) == bytes(cornell_file)) << "run assets/make_cornell.py and commit cornell.glb";
 }
 
 }  // namespace

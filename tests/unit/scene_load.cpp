@@ -12,8 +12,8 @@ using testing::Chart;
 using testing::SceneBuilder;
 using testing::TempFolder;
 
-constexpr std::array<glm::vec3, 4> kFloor = {glm::vec3{-1, 0, 1}, {1, 0, 1}, {1, 0, -1}, {-1, 0, -1}};
-constexpr Chart kWhole{0.1f, 0.1f, 0.9f, 0.9f};
+constexpr std::array<glm::vec3, 4> floor_corners = {glm::vec3{-1, 0, 1}, {1, 0, 1}, {1, 0, -1}, {-1, 0, -1}};
+constexpr Chart whole_chart{0.1f, 0.1f, 0.9f, 0.9f};
 
 Scene load_built(const SceneBuilder& builder) {
   const TempFolder folder;
@@ -31,7 +31,7 @@ void expect_near(glm::vec3 actual, glm::vec3 expected) {
 
 TEST(SceneLoad, ReadsQuadMaterialAndEmission) {
   SceneBuilder builder;
-  builder.quad("floor", kFloor, kWhole, builder.material({0.5f, 0.25f, 1}, {4, 2, 0}));
+  builder.quad("floor", floor_corners, whole_chart, builder.material({0.5f, 0.25f, 1}, {4, 2, 0}));
   const Scene scene = load_built(builder);
   ASSERT_EQ(scene.surfaces.size(), 1u);
   EXPECT_EQ(scene.surfaces[0].node, "floor");
@@ -47,7 +47,7 @@ TEST(SceneLoad, ReadsQuadMaterialAndEmission) {
 
 TEST(SceneLoad, RoundingBeyondTheUnitSquareIsPulledBack) {
   SceneBuilder builder;
-  builder.quad("floor", kFloor, {-5e-6f, 0, 1.000005f, 1}, builder.material(glm::vec3(1)));
+  builder.quad("floor", floor_corners, {-5e-6f, 0, 1.000005f, 1}, builder.material(glm::vec3(1)));
   for (const Vertex& vertex : load_built(builder).vertices) {
     EXPECT_GE(vertex.atlas.x, 0);
     EXPECT_LE(vertex.atlas.x, 1);
@@ -57,7 +57,7 @@ TEST(SceneLoad, RoundingBeyondTheUnitSquareIsPulledBack) {
 TEST(SceneLoad, MissingNormalsBecomeFlatAndUnshared) {
   SceneBuilder builder;
   const std::array<glm::vec3, 4> folded = {glm::vec3{-1, 0, 1}, {1, 0, 1}, {1, 1, -1}, {-1, 0, -1}};
-  builder.quad("roof", folded, kWhole, builder.material(glm::vec3(1)));
+  builder.quad("roof", folded, whole_chart, builder.material(glm::vec3(1)));
   const Scene scene = load_built(builder);
   ASSERT_EQ(scene.vertices.size(), 6u);
   for (std::size_t t = 0; t < 2; ++t) {
@@ -68,7 +68,7 @@ TEST(SceneLoad, MissingNormalsBecomeFlatAndUnshared) {
 
 TEST(SceneLoad, NegativeScaleKeepsTheFrontInFront) {
   SceneBuilder builder;
-  const int node = builder.quad("floor", kFloor, kWhole, builder.material(glm::vec3(1)));
+  const int node = builder.quad("floor", floor_corners, whole_chart, builder.material(glm::vec3(1)));
   builder.node(node)["scale"] = {-2, 1, 1};
   const std::vector<glm::vec3> up(4, {0, 1, 0});
   builder.primitive(node)["attributes"]["NORMAL"] = builder.accessor(up, 5126, "VEC3");
@@ -82,7 +82,7 @@ TEST(SceneLoad, NegativeScaleKeepsTheFrontInFront) {
 TEST(SceneLoad, NormalsFollowTheInverseTranspose) {
   SceneBuilder builder;
   const std::array<glm::vec3, 4> slope = {glm::vec3{-1, 0, 1}, {1, 0, 1}, {1, 2, -1}, {-1, 2, -1}};
-  const int node = builder.quad("slope", slope, kWhole, builder.material(glm::vec3(1)));
+  const int node = builder.quad("slope", slope, whole_chart, builder.material(glm::vec3(1)));
   builder.node(node)["scale"] = {1, 3, 1};
   const std::vector<glm::vec3> tilted(4, glm::normalize(glm::vec3(0, 1, 1)));
   builder.primitive(node)["attributes"]["NORMAL"] = builder.accessor(tilted, 5126, "VEC3");
@@ -92,7 +92,7 @@ TEST(SceneLoad, NormalsFollowTheInverseTranspose) {
 
 TEST(SceneLoad, ParentsRotateAndMatricesApply) {
   SceneBuilder builder;
-  const int child = builder.quad("child", kFloor, kWhole, builder.material(glm::vec3(1)));
+  const int child = builder.quad("child", floor_corners, whole_chart, builder.material(glm::vec3(1)));
   builder.node(child)["matrix"] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 5, 0, 0, 1};  // x + 5
   builder.gltf["nodes"].push_back(
       {{"children", {child}}, {"rotation", {0, 0, std::sqrt(0.5), std::sqrt(0.5)}}});
@@ -105,7 +105,7 @@ TEST(SceneLoad, ParentsRotateAndMatricesApply) {
 TEST(SceneLoad, MovableInsideMovableBelongsToTheOuterOne) {
   SceneBuilder builder;
   const int grey = builder.material(glm::vec3(1));
-  const int floor = builder.quad("floor", kFloor, {0, 0, 0.4f, 0.4f}, grey);
+  const int floor = builder.quad("floor", floor_corners, {0, 0, 0.4f, 0.4f}, grey);
   const int lid = builder.box("lid", glm::vec3(-1), glm::vec3(1), {0.5f, 0.5f, 1, 1}, grey);
   const int car = builder.box("car", glm::vec3(-1), glm::vec3(1), {0, 0.5f, 0.5f, 1}, grey);
   builder.set_movable(lid);
@@ -130,8 +130,8 @@ TEST(SceneLoad, MovableInsideMovableBelongsToTheOuterOne) {
 
 TEST(SceneLoad, DoubleSidedSurfacesComeLast) {
   SceneBuilder builder;
-  builder.quad("leaf", kFloor, {0, 0, 0.4f, 0.4f}, builder.material(glm::vec3(1), {}, true));
-  builder.quad("floor", kFloor, {0.5f, 0.5f, 1, 1}, builder.material(glm::vec3(1)));
+  builder.quad("leaf", floor_corners, {0, 0, 0.4f, 0.4f}, builder.material(glm::vec3(1), {}, true));
+  builder.quad("floor", floor_corners, {0.5f, 0.5f, 1, 1}, builder.material(glm::vec3(1)));
   const Scene scene = load_built(builder);
   EXPECT_EQ(scene.surfaces[0].node, "floor");
   EXPECT_EQ(scene.surfaces[1].node, "leaf");
@@ -142,7 +142,7 @@ TEST(SceneLoad, StripsFansAndUnindexedListsFaceTheSameWay) {
   const std::vector<glm::vec2> atlas = {{0, 0.9f}, {0.9f, 0.9f}, {0.9f, 0}, {0, 0}};
   for (int mode : {5, 6}) {
     SceneBuilder builder;
-    std::vector<glm::vec3> p(kFloor.begin(), kFloor.end());
+    std::vector<glm::vec3> p(floor_corners.begin(), floor_corners.end());
     if (mode == 5) std::swap(p[2], p[3]);
     const int node = builder.mesh("floor", p, atlas, {}, builder.material(glm::vec3(1)));
     builder.primitive(node)["mode"] = mode;
@@ -154,7 +154,7 @@ TEST(SceneLoad, StripsFansAndUnindexedListsFaceTheSameWay) {
 
 TEST(SceneLoad, NormalisedCoordinatesAndSmallIndices) {
   SceneBuilder builder;
-  const int node = builder.quad("floor", kFloor, kWhole, builder.material(glm::vec3(1)));
+  const int node = builder.quad("floor", floor_corners, whole_chart, builder.material(glm::vec3(1)));
   const std::vector<std::array<std::uint16_t, 2>> atlas = {{0, 65535}, {65535, 65535}, {65535, 0}, {0, 0}};
   auto& primitive = builder.primitive(node);
   const int coordinates = builder.accessor(atlas, 5123, "VEC2");
@@ -166,24 +166,24 @@ TEST(SceneLoad, NormalisedCoordinatesAndSmallIndices) {
 
 TEST(SceneLoad, ZeroAreaTrianglesAreDropped) {
   SceneBuilder builder;
-  builder.mesh("floor", {kFloor.begin(), kFloor.end()}, std::vector<glm::vec2>(4, {0.5f, 0.5f}),
+  builder.mesh("floor", {floor_corners.begin(), floor_corners.end()}, std::vector<glm::vec2>(4, {0.5f, 0.5f}),
                {0, 1, 2, 0, 0, 1, 1, 1, 1}, builder.material(glm::vec3(1)));
   EXPECT_EQ(load_built(builder).indices.size(), 3u);
 }
 
 // Two RGB pixels: 255 0 0 and 10 20 30.
-constexpr unsigned char kPicture[] = {
+constexpr unsigned char picture_bytes[] = {
     0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a, 0x00, 0x00, 0x00, 0x0d, 0x49, 0x48, 0x44, 0x52, 0x00, 0x00,
     0x00, 0x02, 0x00, 0x00, 0x00, 0x01, 0x08, 0x02, 0x00, 0x00, 0x00, 0x7b, 0x40, 0xe8, 0xdd, 0x00, 0x00, 0x00,
     0x0f, 0x49, 0x44, 0x41, 0x54, 0x78, 0x9c, 0x63, 0xf8, 0xcf, 0xc0, 0xc0, 0x25, 0x22, 0x07, 0x00, 0x06, 0x65,
     0x01, 0x3c, 0x92, 0x2c, 0xf5, 0xeb, 0x00, 0x00, 0x00, 0x00, 0x49, 0x45, 0x4e, 0x44, 0xae, 0x42, 0x60, 0x82};
 
 TEST(SceneLoad, TexturesComeFromBufferViewsAndFilesBesideTheScene) {
-  const std::string picture(std::begin(kPicture), std::end(kPicture));
+  const std::string picture(std::begin(picture_bytes), std::end(picture_bytes));
   for (bool embedded : {true, false}) {
     SceneBuilder builder;
     const int material = builder.material(glm::vec3(1));
-    const int node = builder.quad("floor", kFloor, kWhole, material);
+    const int node = builder.quad("floor", floor_corners, whole_chart, material);
     builder.primitive(node)["attributes"]["TEXCOORD_0"] = builder.primitive(node)["attributes"]["TEXCOORD_1"];
     builder.gltf["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"] = {{"index", 0}};
     builder.gltf["textures"] = {{{"source", 0}}};

@@ -15,22 +15,22 @@ using testing::Chart;
 using testing::SceneBuilder;
 using testing::TempFolder;
 
-constexpr float kGap = 0.01f, kReach = 0.5f;
-constexpr Chart kFloorChart{0, 0, 0.4f, 0.4f}, kOtherChart{0.5f, 0, 0.9f, 0.4f};
+constexpr float gap = 0.01f, reach = 0.5f;
+constexpr Chart floor_chart{0, 0, 0.4f, 0.4f}, other_chart{0.5f, 0, 0.9f, 0.4f};
 
 struct Floor : SceneBuilder {
-  Floor() { quad("floor", {glm::vec3(-1, 0, 1), {1, 0, 1}, {1, 0, -1}, {-1, 0, -1}}, kFloorChart, grey); }
+  Floor() { quad("floor", {glm::vec3(-1, 0, 1), {1, 0, 1}, {1, 0, -1}, {-1, 0, -1}}, floor_chart, grey); }
 
   // What leaves the floor at x = 1, at this angle to it [degrees]: 90 is a wall, -90 the side of a table.
   Floor& fold(float degrees) {
     const float angle = degrees * std::numbers::pi_v<float> / 180, x = 1 + std::cos(angle), y = std::sin(angle);
-    quad("fold", {glm::vec3(1, 0, 1), {x, y, 1}, {x, y, -1}, {1, 0, -1}}, kOtherChart, grey);
+    quad("fold", {glm::vec3(1, 0, 1), {x, y, 1}, {x, y, -1}, {1, 0, -1}}, other_chart, grey);
     return *this;
   }
 
   // A cube of side 0.4 about z = 0.
   Floor& block(float bottom, float x = 0) {
-    set_movable(box("block", {x - 0.2f, bottom, -0.2f}, {x + 0.2f, bottom + 0.4f, 0.2f}, kOtherChart, grey));
+    set_movable(box("block", {x - 0.2f, bottom, -0.2f}, {x + 0.2f, bottom + 0.4f, 0.2f}, other_chart, grey));
     return *this;
   }
 
@@ -41,7 +41,7 @@ struct Floor : SceneBuilder {
     EXPECT_EQ(scene.surfaces.front().node, "floor");
     std::vector<glm::vec3> offsets(scene.bodies.size(), glm::vec3(0));
     offsets.back() = shift;
-    const auto found = find_walls(scene, offsets, kGap, kReach);
+    const auto found = find_walls(scene, offsets, gap, reach);
     EXPECT_EQ(found.first.size(), scene.indices.size() / 3 + 1);
     EXPECT_EQ(found.first.back(), found.lines.size());
     return {found.lines.begin() + found.first[0], found.lines.begin() + found.first[2]};
@@ -97,11 +97,11 @@ TEST(SceneWalls, ABlockStandsOnItsFourSides) {
 }
 
 TEST(SceneWalls, AGapWithinTheToleranceIsNoGap) {
-  expect_feet(Floor().block(0.8f * kGap).walls(), {0, 0});
+  expect_feet(Floor().block(0.8f * gap).walls(), {0, 0});
 }
 
 TEST(SceneWalls, AWiderGapIsOne) {
-  EXPECT_TRUE(Floor().block(1.2f * kGap).walls().empty());
+  EXPECT_TRUE(Floor().block(1.2f * gap).walls().empty());
 }
 
 TEST(SceneWalls, FollowABodyThatMoves) {
@@ -110,8 +110,8 @@ TEST(SceneWalls, FollowABodyThatMoves) {
 }
 
 TEST(SceneWalls, WhatIsOutOfReachIsLeftOut) {
-  EXPECT_FALSE(Floor().block(0, 1.2f + 0.9f * kReach).walls().empty());
-  EXPECT_TRUE(Floor().block(0, 1.2f + 1.1f * kReach).walls().empty());
+  EXPECT_FALSE(Floor().block(0, 1.2f + 0.9f * reach).walls().empty());
+  EXPECT_TRUE(Floor().block(0, 1.2f + 1.1f * reach).walls().empty());
 }
 
 }  // namespace
