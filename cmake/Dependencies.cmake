@@ -16,6 +16,8 @@ endif()
 find_package(LibDataChannel REQUIRED)
 # OpenImageIO's own package file wants tools that Debian leaves out of it.
 pkg_check_modules(OIIO REQUIRED IMPORTED_TARGET OpenImageIO)
+# Its own package files are unequal between releases, and the C library is the part that keeps its interface.
+pkg_check_modules(SPIRV_CROSS REQUIRED IMPORTED_TARGET spirv-cross-c-shared)
 find_path(TINYGLTF_INCLUDE_DIR tiny_gltf.h REQUIRED)
 find_program(GLSLANG glslangValidator REQUIRED)
 if(LICHTVELD_TESTS)

@@ -15,7 +15,7 @@ layout(binding = 4, rgba32f) uniform readonly image2D emission;
 layout(binding = 5, rgba32f) uniform image2D total_irradiance;           // rgb: E [W m^-2]; a: 1
 layout(binding = 6, rgba32f) uniform writeonly image2D half_difference;  // rgb: (E of half 0 - E of half 1) / 2
 layout(binding = 7) writeonly buffer Radiance { vec4 radiance[]; };      // as gather.glsl's
-layout(binding = 8) writeonly buffer Changes { vec2 changes[]; };        // of a texel: the largest, and the sum of E
+layout(binding = 8) writeonly buffer Changed { vec2 changed[]; };        // of a texel: the largest, and the sum of E
 layout(push_constant) uniform Push { BounceConstants constants; };
 
 // From half of the directions. rgb: sum of w L, lamps with it; a: of w.
@@ -41,5 +41,5 @@ void main() {
   imageStore(half_difference, texel, vec4((irradiance_of(first) - irradiance_of(second)) / 2.0, 0.0));
   const vec3 own = me < constants.lamps ? vec3(0.0) : imageLoad(emission, texel).rgb;
   radiance[me] = vec4(radiance_of(own, imageLoad(albedo, texel).rgb, e), 1.0);
-  if (constants.counted != 0u) changes[me] = vec2(max(change.r, max(change.g, change.b)), e.r + e.g + e.b);
+  if (constants.counted != 0u) changed[me] = vec2(max(change.r, max(change.g, change.b)), e.r + e.g + e.b);
 }

@@ -4,8 +4,8 @@
 #include "shared.h"
 
 layout(local_size_x = TILE) in;
-layout(binding = 0) readonly buffer OfTexels { vec2 of_texels[]; };  // link_bounce.comp's
-layout(binding = 1) writeonly buffer Changes { vec2 changes[]; };    // of each workgroup
+layout(binding = 0) readonly buffer Changed { vec2 changed[]; };    // link_bounce.comp's
+layout(binding = 1) writeonly buffer Changes { vec2 changes[]; };   // of each workgroup
 layout(push_constant) uniform Push { ChangeConstants constants; };
 
 shared vec2 partial[TILE];
@@ -16,7 +16,7 @@ void main() {
   const uint lane = gl_LocalInvocationID.x;
   vec2 mine = vec2(0.0);
   for (uint me = gl_GlobalInvocationID.x; me < constants.texels; me += gl_NumWorkGroups.x * TILE)
-    mine = both(mine, of_texels[me]);
+    mine = both(mine, changed[me]);
   partial[lane] = mine;
   for (uint width = TILE / 2u; width > 0u; width /= 2u) {
     barrier();

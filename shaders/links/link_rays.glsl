@@ -1,20 +1,16 @@
-// Rays of texels along a pair's two directions, and the A-buffer of texel numbers that they look into. Bindings 3, 6 to 9,
-// 11, 13 and 14 are of the shaders that include it: the table at 9.
+// Rays of texels along a pair's two directions. Bindings 0, 1, 3, 5 to 9 and 11 to 14 are of what else its shaders include
+// (layers_in_front.glsl, put_link_16.glsl and put_link_32.glsl, relink.glsl) and of themselves.
 
 layout(local_size_x_id = 1) in;  // a tile
-layout(binding = 0) readonly buffer Layers { uvec2 layers[]; };
-layout(binding = 1) readonly buffer Filled { uint filled[]; };
 layout(binding = 2) uniform usamplerBuffer regions;    // rows.glsl
 layout(binding = 4) uniform usamplerBuffer receivers;  // of each valid texel, likewise
-layout(binding = 5) buffer Doubts { uvec2 doubts[]; };  // rays that are not done with: texel, region
 layout(binding = 10) buffer Counted { Counters counters; };
-layout(binding = 12) buffer Rest { uvec2 rest[]; };  // what is left of those, likewise
 layout(push_constant) uniform Push { RouteLinksConstants constants; };
 
-// What is known of such a ray, in its region's number: no layer was found; a wall stands before the nearest pixel.
+// Rays that are not done with are listed by texel and region, once from route_links to route_doubts (`doubts`) and once
+// from there to route_rest (`rest`). What is known of such a ray stands in its region's number: no layer was found; a wall
+// stands before the nearest pixel.
 const uint NOTHING_SEEN = 0x80000000u, WALL_BETWEEN = 0x40000000u;
-layout(constant_id = 0) const uint CAPACITY = 16;
-#include "layer_link.glsl"
 #include "rows.glsl"
 
 // A texel before a region's raster.
@@ -63,25 +59,4 @@ vec2 shift_to(ivec2 pixel, Sight sight) {
 vec3 away_to(vec2 shift, Sight sight, Region region) {
   const vec3 across = region.view.right.xyz * shift.x + region.view.up.xyz * shift.y;
   return (across / sight.scale + sight.travel * dot(shift, sight.slope)) / sight.scale;
-}
-
-// The nearest layer of a pixel in front of a receiver, at most `limit` deep along the light that it receives; -1 if there
-// is none. Layers that are not asked for, where `wanted` is false.
-int nearest_in_front(ivec2 pixel, Region region, float sign, float limit, bool wanted) {
-  const ivec2 within = pixel - region.rect.xy;
-  const uint index = uint(region.place.w + within.y * region.rect.z + within.x);
-  const uint counts = wanted ? filled[index] : 0u;
-  const bool along = sign > 0.0;
-  const uint count = min(layers_of(counts, along), CAPACITY);
-  int found = -1;
-  float nearest = -NO_LAYER;
-  for (uint k = 0u; k < count; ++k) {
-    const uvec2 layer = layers[place_of(k, along, CAPACITY) * constants.store_pixels + index];
-    const float depth = sign * uintBitsToFloat(layer.y);
-    if (depth <= limit && depth > nearest) {
-      nearest = depth;
-      found = int(layer.x);
-    }
-  }
-  return found;
 }

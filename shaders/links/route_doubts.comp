@@ -5,7 +5,9 @@
 #include "shared.h"
 #include "link_rays.glsl"
 
+layout(binding = 5) readonly buffer Doubts { uvec2 doubts[]; };
 layout(binding = 8) uniform samplerBuffer walls;
+layout(binding = 12) writeonly buffer Rest { uvec2 rest[]; };
 #include "receiver_plane.glsl"
 #include "wall.glsl"
 

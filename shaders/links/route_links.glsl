@@ -3,10 +3,12 @@
 // between, are doubts for route_doubts to look at. No branches: a device that runs all lanes through both sides of each
 // would pay for the rare one every time.
 #include "link_rays.glsl"
+#include "layers_in_front.glsl"
 #include "receiver_plane.glsl"
 #include "relink.glsl"
 
 layout(binding = 3) readonly buffer Jobs { RouteJob jobs[]; };  // of each workgroup
+layout(binding = 5) writeonly buffer Doubts { uvec2 doubts[]; };
 layout(binding = 11) readonly buffer Tiles { uint tiles[]; };
 
 void route(uint me, uint index, Region region) {

@@ -1,10 +1,12 @@
 // The rays that see nothing at their nearest pixel, or that a wall stands before. Looks at all of the 2 x 2 pixels around
 // the texel.
 #include "link_rays.glsl"
+#include "layers_in_front.glsl"
 
 layout(binding = 6, rgba32f) uniform readonly image2D position;
 layout(binding = 7) readonly buffer WallsFirst { uint walls_first[]; };
 layout(binding = 8) uniform samplerBuffer walls;
+layout(binding = 12) readonly buffer Rest { uvec2 rest[]; };
 #include "receiver.glsl"
 #include "relink.glsl"
 

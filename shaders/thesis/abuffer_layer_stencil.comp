@@ -7,12 +7,13 @@ layout(constant_id = 0) const uint LAYERS = 8;
 #include "abuffer_stencil.glsl"
 
 layout(local_size_x = GROUP, local_size_y = GROUP) in;
-layout(binding = 2, rgba32f) uniform writeonly image2D shown;
+layout(binding = 2, rgba32f) uniform writeonly image2D shown_layer;
 layout(push_constant) uniform Push { LayerConstants constants; };
 
 void main() {
   const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   if (any(greaterThanEqual(pixel, ivec2(constants.size)))) return;
   const bool taken = constants.layer < abuffer_filled(pixel, constants.size);
-  imageStore(shown, pixel, taken ? abuffer_layer(pixel, constants.size, constants.layer) : vec4(0.0, 0.0, 0.0, NO_LAYER));
+  const vec4 none = vec4(0.0, 0.0, 0.0, NO_LAYER);
+  imageStore(shown_layer, pixel, taken ? abuffer_layer(pixel, constants.size, constants.layer) : none);
 }

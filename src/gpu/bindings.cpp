@@ -1,38 +1,36 @@
 #include "bindings.hpp"
 
-#include <cassert>
+#include <stdexcept>
 
 namespace lichtveld::gpu {
 
-Binding sampled(const Image& image, const vk::raii::Sampler& sampler) {
-  return {.kind = Kind::sampled_image, .image = &image, .sampler = *sampler};
+Binding sampled(std::string_view name, const Image& image, const vk::raii::Sampler& sampler) {
+  return {.name = name, .kind = Kind::sampled_image, .image = &image, .sampler = *sampler};
 }
-Binding reads(const Image& image) {
-  return {.kind = Kind::storage_image, .image = &image};
+Binding reads(std::string_view name, const Image& image) {
+  return {.name = name, .kind = Kind::storage_image, .image = &image};
 }
-Binding writes(const Image& image) {
-  return {.kind = Kind::storage_image, .image = &image, .writes = true};
+Binding writes(std::string_view name, const Image& image) {
+  return {.name = name, .kind = Kind::storage_image, .image = &image, .writes = true};
 }
-Binding reads(const Buffer& buffer) {
-  return {.kind = Kind::storage_buffer, .buffer = &buffer};
+Binding reads(std::string_view name, const Buffer& buffer) {
+  return {.name = name, .kind = Kind::storage_buffer, .buffer = &buffer};
 }
-Binding writes(const Buffer& buffer) {
-  return {.kind = Kind::storage_buffer, .buffer = &buffer, .writes = true};
+Binding writes(std::string_view name, const Buffer& buffer) {
+  return {.name = name, .kind = Kind::storage_buffer, .buffer = &buffer, .writes = true};
 }
-Binding fetches(const Buffer& buffer) {
-  return {.kind = Kind::texel_buffer, .buffer = &buffer};
+Binding fetches(std::string_view name, const Buffer& buffer) {
+  return {.name = name, .kind = Kind::texel_buffer, .buffer = &buffer};
 }
 
 void push_descriptors(const vk::raii::CommandBuffer& commands, const Pipeline& pipeline,
-                      const std::vector<Binding>& bindings) {
-  assert(bindings.size() == pipeline.kinds().size());
-  std::vector<vk::DescriptorImageInfo> images(bindings.size());
-  std::vector<vk::DescriptorBufferInfo> buffers(bindings.size());
-  std::vector<vk::BufferView> views(bindings.size());
+                      const std::vector<const Binding*>& matched) {
+  std::vector<vk::DescriptorImageInfo> images(matched.size());
+  std::vector<vk::DescriptorBufferInfo> buffers(matched.size());
+  std::vector<vk::BufferView> views(matched.size());
   std::vector<vk::WriteDescriptorSet> writes;
-  for (std::uint32_t index = 0; index < bindings.size(); ++index) {
-    const Binding& binding = bindings[index];
-    assert(binding.kind == pipeline.kinds()[index]);
+  for (std::size_t index = 0; index < matched.size(); ++index) {
+    const Binding& binding = *matched[index];
     if (binding.image != nullptr)
       images[index] = vk::DescriptorImageInfo{.sampler = binding.sampler,
                                               .imageView = binding.image->view(),
@@ -43,7 +41,7 @@ void push_descriptors(const vk::raii::CommandBuffer& commands, const Pipeline& p
       views[index] = binding.buffer->texels();
     else
       buffers[index] = vk::DescriptorBufferInfo{.buffer = binding.buffer->handle(), .range = VK_WHOLE_SIZE};
-    writes.push_back({.dstBinding = index,
+    writes.push_back({.dstBinding = pipeline.interface().slots[index].binding,
                       .descriptorCount = 1,
                       .descriptorType = descriptor_type(binding.kind),
                       .pImageInfo = &images[index],
@@ -54,13 +52,23 @@ void push_descriptors(const vk::raii::CommandBuffer& commands, const Pipeline& p
 }
 
 void Draw::bind(const GraphicsPipeline& pipeline, const std::vector<Binding>& bindings) {
+  const auto matched = match(pipeline.interface(), bindings);
+  check_listed(pipeline.interface(), bindings, listed_);
   commands_.bindPipeline(vk::PipelineBindPoint::eGraphics, pipeline.handle());
-  push_descriptors(commands_, pipeline, bindings);
+  push_descriptors(commands_, pipeline, matched);
   bound_ = &pipeline;
+  pushed_ = 0;
+}
+
+const GraphicsPipeline& Draw::bound() const {
+  if (bound_ == nullptr) throw std::logic_error("a draw or its constants before any pipeline is bound");
+  return *bound_;
 }
 
 void Draw::push_bytes(std::span<const std::byte> bytes) {
-  commands_.pushConstants<std::byte>(bound_->layout(), vk::ShaderStageFlagBits::eAllGraphics, 0, bytes);
+  check_push_bytes(bound().interface(), bytes.size());
+  commands_.pushConstants<std::byte>(bound().layout(), vk::ShaderStageFlagBits::eAllGraphics, 0, bytes);
+  pushed_ = bytes.size();
 }
 
 void Draw::stencil_reference(std::uint32_t value) {
@@ -89,10 +97,12 @@ void Draw::windows(const std::vector<Window>& windows) {
 
 void Draw::indexed(std::uint32_t first, std::uint32_t count, std::uint32_t instances,
                    std::uint32_t first_instance) {
+  check_push_bytes(bound().interface(), pushed_);
   if (count > 0) commands_.drawIndexed(count, instances, first, 0, first_instance);
 }
 
 void Draw::full_screen_triangle() {
+  check_push_bytes(bound().interface(), pushed_);
   commands_.draw(3, 1, 0, 0);
 }
 

@@ -66,10 +66,12 @@ void Frame::compute_bytes(const ComputePipeline& pipeline, const std::vector<Bin
     throw std::runtime_error(pipeline.name() + ": " + std::to_string(groups_x) + " workgroups, more than the " +
                              std::to_string(device_.summary().max_groups) + " that " + device_.summary().name +
                              " starts at once; try a smaller --size");
+  const auto matched = match(pipeline.interface(), bindings);
+  check_push_bytes(pipeline.interface(), constants.size());
   for (const Binding& binding : bindings) use(binding, Stage::eComputeShader);
   pass(pipeline.name(), [&] {
     commands_.bindPipeline(vk::PipelineBindPoint::eCompute, pipeline.handle());
-    push_descriptors(commands_, pipeline, bindings);
+    push_descriptors(commands_, pipeline, matched);
     if (!constants.empty())
       commands_.pushConstants<std::byte>(pipeline.layout(), vk::ShaderStageFlagBits::eCompute, 0, constants);
     commands_.dispatch(groups_x, groups_y, 1);
@@ -102,7 +104,7 @@ void Frame::render(const std::string& name, const Target& target, const std::vec
                               .colorAttachmentCount = static_cast<std::uint32_t>(colours.size()),
                               .pColorAttachments = colours.data(),
                               .pStencilAttachment = target.stencil ? &stencil : nullptr});
-    Draw recorder(commands_);
+    Draw recorder(commands_, bindings);
     recorder.windows({{{{0, 0}, target.extent, {{0, 0}, target.extent}}}});
     draw(recorder);
     commands_.endRendering();

@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "reflection.hpp"
+
 namespace lichtveld::gpu {
 
 namespace {
@@ -11,14 +13,14 @@ vk::ShaderStageFlags stages_of(vk::PipelineBindPoint bind_point) {
                                                        : vk::ShaderStageFlagBits::eAllGraphics;
 }
 
-vk::raii::ShaderModule make_module(const Device& device, Spirv code) {
-  return {device.handle(), vk::ShaderModuleCreateInfo{.codeSize = code.size_bytes(), .pCode = code.data()}};
+vk::raii::ShaderModule make_module(const Device& device, const Shader& shader) {
+  return {device.handle(),
+          vk::ShaderModuleCreateInfo{.codeSize = shader.words.size_bytes(), .pCode = shader.words.data()}};
 }
 
-// Specialisation constants 0, 1, .. as the interface lists them.
-class Specialisation {
+class SpecialisationInfo {
  public:
-  explicit Specialisation(const std::vector<std::uint32_t>& values) {
+  explicit SpecialisationInfo(const Specialisation& values) {
     for (std::uint32_t id = 0; id < values.size(); ++id)
       entries_.push_back({.constantID = id, .offset = id * 4, .size = 4});
     info_ = {.mapEntryCount = static_cast<std::uint32_t>(entries_.size()),
@@ -42,57 +44,59 @@ vk::DescriptorType descriptor_type(Kind kind) {
   return types[static_cast<int>(kind)];
 }
 
-Pipeline::Pipeline(const Device& device, std::string name, const Interface& interface,
+Pipeline::Pipeline(const Device& device, std::string name, Interface interface,
                    vk::PipelineBindPoint bind_point)
-    : name_(std::move(name)), kinds_(interface.kinds), bind_point_(bind_point) {
+    : name_(std::move(name)), interface_(std::move(interface)), bind_point_(bind_point) {
   std::vector<vk::DescriptorSetLayoutBinding> bindings;
-  for (std::uint32_t index = 0; index < kinds_.size(); ++index)
-    bindings.push_back({.binding = index,
-                        .descriptorType = descriptor_type(kinds_[index]),
+  for (const Slot& slot : interface_.slots)
+    bindings.push_back({.binding = slot.binding,
+                        .descriptorType = descriptor_type(slot.kind),
                         .descriptorCount = 1,
                         .stageFlags = stages_of(bind_point)});
   set_layout_ = {device.handle(), vk::DescriptorSetLayoutCreateInfo{
                                       .flags = vk::DescriptorSetLayoutCreateFlagBits::ePushDescriptorKHR,
                                       .bindingCount = static_cast<std::uint32_t>(bindings.size()),
                                       .pBindings = bindings.data()}};
-  const vk::PushConstantRange range{.stageFlags = stages_of(bind_point), .size = interface.push_bytes};
+  const vk::PushConstantRange range{.stageFlags = stages_of(bind_point), .size = interface_.push_bytes};
   layout_ = {device.handle(),
              vk::PipelineLayoutCreateInfo{.setLayoutCount = 1,
                                           .pSetLayouts = &*set_layout_,
-                                          .pushConstantRangeCount = interface.push_bytes > 0 ? 1u : 0u,
+                                          .pushConstantRangeCount = interface_.push_bytes > 0 ? 1u : 0u,
                                           .pPushConstantRanges = &range}};
 }
 
-ComputePipeline::ComputePipeline(const Device& device, std::string name, Spirv shader,
-                                 const Interface& interface)
-    : Pipeline(device, std::move(name), interface, vk::PipelineBindPoint::eCompute) {
+ComputePipeline::ComputePipeline(const Device& device, std::string name, const Shader& shader,
+                                 const Specialisation& specialisation)
+    : Pipeline(device, std::move(name), reflect(shader), vk::PipelineBindPoint::eCompute) {
   const auto module = make_module(device, shader);
-  const Specialisation specialisation(interface.specialisation);
+  const SpecialisationInfo specialised(specialisation);
   pipeline_ = {device.handle(), nullptr,
                vk::ComputePipelineCreateInfo{.stage = {.stage = vk::ShaderStageFlagBits::eCompute,
                                                        .module = *module,
                                                        .pName = "main",
-                                                       .pSpecializationInfo = specialisation.get()},
+                                                       .pSpecializationInfo = specialised.get()},
                                              .layout = *layout_}};
   device.name(pipeline_, name_);
 }
 
-GraphicsPipeline::GraphicsPipeline(const Device& device, std::string name, Spirv vertex, Spirv fragment,
-                                   const Interface& interface, const GraphicsState& state)
-    : Pipeline(device, std::move(name), interface, vk::PipelineBindPoint::eGraphics) {
-  const Specialisation specialisation(interface.specialisation);
+GraphicsPipeline::GraphicsPipeline(const Device& device, std::string name, const Shader& vertex,
+                                   const std::optional<Shader>& fragment, const GraphicsState& state,
+                                   const Specialisation& specialisation)
+    : Pipeline(device, std::move(name), fragment ? merge(reflect(vertex), reflect(*fragment)) : reflect(vertex),
+               vk::PipelineBindPoint::eGraphics) {
+  const SpecialisationInfo specialised(specialisation);
   const auto vertex_module = make_module(device, vertex);
   vk::raii::ShaderModule fragment_module = nullptr;
   std::vector<vk::PipelineShaderStageCreateInfo> stages = {{.stage = vk::ShaderStageFlagBits::eVertex,
                                                             .module = *vertex_module,
                                                             .pName = "main",
-                                                            .pSpecializationInfo = specialisation.get()}};
-  if (!fragment.empty()) {
-    fragment_module = make_module(device, fragment);
+                                                            .pSpecializationInfo = specialised.get()}};
+  if (fragment) {
+    fragment_module = make_module(device, *fragment);
     stages.push_back({.stage = vk::ShaderStageFlagBits::eFragment,
                       .module = *fragment_module,
                       .pName = "main",
-                      .pSpecializationInfo = specialisation.get()});
+                      .pSpecializationInfo = specialised.get()});
   }
 
   const vk::VertexInputBindingDescription binding{.stride = state.vertex_stride};
@@ -116,9 +120,9 @@ GraphicsPipeline::GraphicsPipeline(const Device& device, std::string name, Spirv
   const vk::PipelineDepthStencilStateCreateInfo depth_stencil{
       .stencilTestEnable = stencil, .front = state.stencil, .back = state.stencil};
   const vk::PipelineColorBlendAttachmentState write_all{
-      .colorWriteMask = fragment.empty() ? vk::ColorComponentFlags{}
-                                         : vk::ColorComponentFlagBits::eR | vk::ColorComponentFlagBits::eG |
-                                               vk::ColorComponentFlagBits::eB | vk::ColorComponentFlagBits::eA};
+      .colorWriteMask = fragment ? vk::ColorComponentFlagBits::eR | vk::ColorComponentFlagBits::eG |
+                                       vk::ColorComponentFlagBits::eB | vk::ColorComponentFlagBits::eA
+                                 : vk::ColorComponentFlags{}};
   const std::vector blends(state.colours.size(), write_all);
   const vk::PipelineColorBlendStateCreateInfo blend{
       .attachmentCount = static_cast<std::uint32_t>(blends.size()), .pAttachments = blends.data()};

@@ -8,8 +8,6 @@ namespace lichtveld::lightfield {
 
 namespace {
 
-using gpu::Kind;
-
 // The weights of half of the directions that a texel receives come to pi / 2. Few directions may come to more,
 // but never to more than all solid angles of a hemisphere [sr].
 constexpr float most_weight = 2 * std::numbers::pi_v<float>;
@@ -28,11 +26,7 @@ gpu::Buffer scaled(const gpu::Device& device, const Lamps& lamps, float scale) {
 }  // namespace
 
 DirectLight::DirectLight(const gpu::Device& device, const LinkTable& table)
-    : sum_(device, "direct_light", direct_light_comp,
-           {.kinds = {Kind::storage_buffer, Kind::texel_buffer, Kind::storage_buffer, Kind::storage_image,
-                      Kind::storage_buffer, Kind::storage_buffer},
-            .push_bytes = sizeof(shaders::DirectConstants),
-            .specialisation = {table.bits}}),
+    : sum_(device, "direct_light", shaders::direct_light_comp, {table.bits}),
       scale_(scale_for(table.records.lamps())),
       lamps_(scaled(device, table.records.lamps(), scale_)),
       sums_(device, "lightfield/direct_light", std::uint64_t{table.texels} * 2 * sizeof(glm::uvec3),
@@ -47,8 +41,9 @@ void DirectLight::sum(gpu::Frame& frame, const LightMap& map, const LinkTable& t
   frame.clear("direct_light", sums_);
   for (const auto& chunk : table.chunks)
     frame.compute(sum_,
-                  {gpu::reads(chunk.links), gpu::fetches(directions), gpu::reads(table.texel_of),
-                   gpu::reads(map.normal), gpu::reads(lamps_), gpu::writes(sums_)},
+                  {gpu::reads("Table", chunk.links), gpu::fetches("directions", directions),
+                   gpu::reads("TexelOf", table.texel_of), gpu::reads("normal", map.normal),
+                   gpu::reads("Lamps", lamps_), gpu::writes("Direct", sums_)},
                   shaders::DirectConstants{.texels = table.texels,
                                            .first_pair = chunk.first_pair,
                                            .pairs = chunk.pairs,

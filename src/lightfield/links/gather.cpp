@@ -12,8 +12,6 @@ namespace lichtveld::lightfield {
 
 namespace {
 
-using gpu::Kind;
-
 // Workgroups that go through all texels for what a bounce has changed.
 constexpr std::uint32_t change_groups = 64;
 // Of vectors that shaders fetch at once.
@@ -37,17 +35,9 @@ gpu::Buffer dark(const gpu::Device& device, const LinkTable& table) {
 
 Gather::Gather(const gpu::Device& device, const LinkTable& table)
     : device_(device),
-      gather_(device, "gather", table.bits == 16 ? gpu::Spirv(gather_16_comp) : gpu::Spirv(gather_32_comp),
-              {.kinds = {Kind::storage_buffer, Kind::texel_buffer, Kind::texel_buffer, Kind::storage_buffer,
-                         Kind::storage_image, Kind::storage_buffer, Kind::storage_buffer},
-               .push_bytes = sizeof(shaders::GatherConstants)}),
-      end_(device, "gather", link_bounce_comp,
-           {.kinds = {Kind::texel_buffer, Kind::storage_buffer, Kind::storage_buffer, Kind::storage_image,
-                      Kind::storage_image, Kind::storage_image, Kind::storage_image, Kind::storage_buffer,
-                      Kind::storage_buffer},
-            .push_bytes = sizeof(shaders::BounceConstants)}),
-      change_(device, "gather", link_change_comp,
-              {.kinds = std::vector(2, Kind::storage_buffer), .push_bytes = sizeof(shaders::ChangeConstants)}),
+      gather_(device, "gather", table.bits == 16 ? shaders::gather_16_comp : shaders::gather_32_comp),
+      end_(device, "gather", shaders::link_bounce_comp),
+      change_(device, "gather", shaders::link_change_comp),
       radiance_(dark(device, table)),
       sums_(storage(device, "lightfield/sums",
                     DirectionSet::parts * std::uint64_t{table.texels} * sizeof(glm::vec4), gpu::Memory::device,
@@ -82,8 +72,9 @@ void Gather::gather(gpu::Frame& frame, const KeptLinks& links, std::uint32_t fir
   for (const auto& chunk : table.chunks)
     frame.compute(
         gather_,
-        {gpu::reads(chunk.links), gpu::fetches(radiance_), gpu::fetches(links.directions()),
-         gpu::reads(table.texel_of), gpu::reads(links.map().normal), gpu::writes(sums_), gpu::reads(groups_)},
+        {gpu::reads("Table", chunk.links), gpu::fetches("radiance", radiance_),
+         gpu::fetches("directions", links.directions()), gpu::reads("TexelOf", table.texel_of),
+         gpu::reads("normal", links.map().normal), gpu::writes("Sums", sums_), gpu::reads("Groups", groups_)},
         shaders::GatherConstants{.texels = table.texels,
                                  .first_pair = chunk.first_pair,
                                  .pairs = chunk.pairs,
@@ -99,16 +90,18 @@ void Gather::end(gpu::Frame& frame, const KeptLinks& links, bool counted) const 
   const auto& table = links.table();
   const auto& direct = links.direct();
   frame.compute(end_,
-                {gpu::fetches(sums_), gpu::reads(direct.sums()), gpu::reads(table.texel_of),
-                 gpu::reads(map.albedo), gpu::reads(map.emission), gpu::writes(map.total_irradiance),
-                 gpu::writes(map.half_difference), gpu::writes(radiance_), gpu::writes(changed_)},
+                {gpu::fetches("sums", sums_), gpu::reads("Direct", direct.sums()),
+                 gpu::reads("TexelOf", table.texel_of), gpu::reads("albedo", map.albedo),
+                 gpu::reads("emission", map.emission), gpu::writes("total_irradiance", map.total_irradiance),
+                 gpu::writes("half_difference", map.half_difference), gpu::writes("Radiance", radiance_),
+                 gpu::writes("Changed", changed_)},
                 shaders::BounceConstants{.texels = table.texels,
                                          .lamps = table.records.lamps().count(),
                                          .direct_scale = direct.scale(),
                                          .counted = counted ? 1u : 0u},
                 table.groups(), 1);
   if (!counted) return;
-  frame.compute(change_, {gpu::reads(changed_), gpu::writes(changes_)},
+  frame.compute(change_, {gpu::reads("Changed", changed_), gpu::writes("Changes", changes_)},
                 shaders::ChangeConstants{.texels = table.texels}, change_groups, 1);
   frame.to_host(changes_);
 }

@@ -19,8 +19,6 @@ namespace lichtveld::lightfield {
 
 namespace {
 
-using gpu::Kind;
-
 // A store of this size holds what a moved cube changes in 384 directions at 256 pixels, and is cleared in a
 // fraction of a millisecond [bytes].
 constexpr std::uint64_t usual_store = 64 << 20;
@@ -44,16 +42,6 @@ StoreExtent store_extent(const gpu::Device& device, std::uint32_t pixels, std::u
   const auto rasters = static_cast<std::uint32_t>(std::max<std::uint64_t>(1, usual_store / a_raster));
   const std::uint32_t columns = std::clamp(widest_store / pixels, 1u, rasters);
   return {columns * pixels, std::max(1u, rasters / columns) * pixels};
-}
-
-// Of route_links, route_doubts and route_rest, each of which leaves out what it does not use.
-gpu::Interface look_interface(const LinkStore& store, const LinkTable& table) {
-  std::vector kinds(15, Kind::storage_buffer);
-  kinds[2] = kinds[4] = kinds[8] = Kind::texel_buffer;
-  kinds[6] = Kind::storage_image;
-  return {.kinds = kinds,
-          .push_bytes = sizeof(shaders::RouteLinksConstants),
-          .specialisation = {store.capacity, table.tile}};
 }
 
 // The whole raster at its place, of which the region is visible: nothing is cut off where a region ends, which
@@ -89,29 +77,17 @@ LinkStore::LinkStore(const gpu::Device& device, const Settings& settings, std::u
 
 RouteLinks::RouteLinks(const gpu::Device& device, const LinkStore& store, const LinkTable& table)
     : device_(device),
-      count_(
-          device, "emit_links", emit_links_count_comp,
-          {.kinds = std::vector(2, Kind::storage_buffer), .push_bytes = sizeof(shaders::CountLayersConstants)}),
+      count_(device, "emit_links", shaders::emit_links_count_comp),
       route_(device, "route_links",
-             table.bits == 16 ? gpu::Spirv(route_links_16_comp) : gpu::Spirv(route_links_32_comp),
-             look_interface(store, table)),
-      route_doubts_(device, "route_links", route_doubts_comp, look_interface(store, table)),
+             table.bits == 16 ? shaders::route_links_16_comp : shaders::route_links_32_comp,
+             {store.capacity, table.tile}),
+      route_doubts_(device, "route_links", shaders::route_doubts_comp, {store.capacity, table.tile}),
       route_rest_(device, "route_links",
-                  table.bits == 16 ? gpu::Spirv(route_rest_16_comp) : gpu::Spirv(route_rest_32_comp),
-                  look_interface(store, table)),
-      receive_(device, "route_links", receivers_comp,
-               {.kinds = {Kind::storage_buffer, Kind::storage_image, Kind::storage_image, Kind::storage_image,
-                          Kind::storage_image, Kind::storage_buffer},
-                .push_bytes = sizeof(shaders::ReceiveConstants)}),
-      cover_(device, "route_links", link_cover_comp,
-             {.kinds = {Kind::storage_buffer, Kind::texel_buffer, Kind::texel_buffer, Kind::storage_image,
-                        Kind::storage_buffer},
-              .push_bytes = sizeof(shaders::CoverConstants),
-              .specialisation = {table.bits}}),
-      check_(device, "link_check", link_check_comp,
-             {.kinds = std::vector(4, Kind::storage_buffer),
-              .push_bytes = sizeof(shaders::CheckConstants),
-              .specialisation = {table.bits}}),
+                  table.bits == 16 ? shaders::route_rest_16_comp : shaders::route_rest_32_comp,
+                  {store.capacity, table.tile}),
+      receive_(device, "route_links", shaders::receivers_comp),
+      cover_(device, "route_links", shaders::link_cover_comp, {table.bits}),
+      check_(device, "link_check", shaders::link_check_comp, {table.bits}),
       receivers_(device, "lightfield/receivers", table.texels * sizeof(shaders::Receiver),
                  vk::BufferUsageFlagBits::eStorageBuffer, gpu::Memory::device, rows),
       regions_(host_buffer(device, "lightfield/regions", rows)),
@@ -121,18 +97,15 @@ RouteLinks::RouteLinks(const gpu::Device& device, const LinkStore& store, const 
       doubts_(device, "lightfield/doubts", sizeof(glm::uvec2), vk::BufferUsageFlagBits::eStorageBuffer),
       rest_(device, "lightfield/rest", sizeof(glm::uvec2), vk::BufferUsageFlagBits::eStorageBuffer) {
   for (const std::uint32_t double_sided : {0u, 1u})
-    draw_.emplace_back(device, "emit_links", emit_links_vert, emit_links_frag,
-                       gpu::Interface{.kinds = {Kind::storage_buffer, Kind::texel_buffer, Kind::storage_image,
-                                                Kind::storage_buffer, Kind::storage_buffer},
-                                      .push_bytes = sizeof(shaders::EmitLinksConstants),
-                                      .specialisation = {double_sided}},
-                       scene_state());
+    draw_.emplace_back(device, "emit_links", shaders::emit_links_vert, shaders::emit_links_frag, scene_state(),
+                       gpu::Specialisation{double_sided});
 }
 
 void RouteLinks::read_receivers(gpu::Frame& frame, const LightMap& map, const LinkTable& table) const {
   frame.compute(receive_,
-                {gpu::reads(table.texel_of), gpu::reads(map.position), gpu::reads(map.normal),
-                 gpu::reads(map.face_normal), gpu::reads(map.near_walls), gpu::writes(receivers_)},
+                {gpu::reads("TexelOf", table.texel_of), gpu::reads("position", map.position),
+                 gpu::reads("normal", map.normal), gpu::reads("face_normal", map.face_normal),
+                 gpu::reads("near_walls", map.near_walls), gpu::writes("Receivers", receivers_)},
                 shaders::ReceiveConstants{.texels = table.texels}, table.groups(), 1);
 }
 
@@ -141,27 +114,28 @@ void RouteLinks::find_cover(gpu::Frame& frame, const Geometry& geometry, const L
                             const std::vector<std::uint32_t>& groups) {
   gpu::put<std::uint32_t>(device_, groups_, groups);
   const auto& chunk = table.chunks.front();
-  frame.compute(cover_,
-                {gpu::reads(chunk.links), gpu::fetches(directions), gpu::fetches(receivers_),
-                 gpu::writes(map.cover), gpu::reads(groups_)},
-                shaders::CoverConstants{.texels = table.texels,
-                                        .pairs = chunk.pairs,
-                                        .votes = std::min(chunk.pairs, cover_votes),
-                                        .contact = contact(geometry.sphere, pixels)},
-                static_cast<std::uint32_t>(groups.size()), 1);
+  frame.compute(
+      cover_,
+      {gpu::reads("Table", chunk.links), gpu::fetches("directions", directions),
+       gpu::fetches("receivers", receivers_), gpu::writes("cover", map.cover), gpu::reads("Groups", groups_)},
+      shaders::CoverConstants{.texels = table.texels,
+                              .pairs = chunk.pairs,
+                              .votes = std::min(chunk.pairs, cover_votes),
+                              .contact = contact(geometry.sphere, pixels)},
+      static_cast<std::uint32_t>(groups.size()), 1);
 }
 
 void RouteLinks::compare(gpu::Frame& frame, const LinkTable& table, const LinkTable::Chunk& chunk,
                          std::uint32_t pair, const LinkTable::Chunk& again, const gpu::Buffer& counters) const {
   const std::uint32_t a_word = 32 / table.bits;  // pairs
-  frame.compute(
-      check_,
-      {gpu::reads(chunk.links), gpu::reads(again.links), gpu::writes(counters), gpu::reads(table.texel_of)},
-      shaders::CheckConstants{.texels = table.texels,
-                              .size = table.number.extent().width,
-                              .first_word = (pair - chunk.first_pair) / a_word,
-                              .words = chunk.pairs / a_word},
-      many_groups, 1);
+  frame.compute(check_,
+                {gpu::reads("Table", chunk.links), gpu::reads("Again", again.links),
+                 gpu::writes("Counted", counters), gpu::reads("TexelOf", table.texel_of)},
+                shaders::CheckConstants{.texels = table.texels,
+                                        .size = table.number.extent().width,
+                                        .first_word = (pair - chunk.first_pair) / a_word,
+                                        .words = chunk.pairs / a_word},
+                many_groups, 1);
 }
 
 void RouteLinks::record(gpu::Frame& frame, const RegionBatch& batch, const Geometry& geometry,
@@ -177,8 +151,9 @@ void RouteLinks::record(gpu::Frame& frame, const RegionBatch& batch, const Geome
       *list = gpu::Buffer(device_, list->name(), bytes, vk::BufferUsageFlagBits::eStorageBuffer);
 
   frame.clear("emit_links", store.filled);
-  const std::vector bindings = {gpu::reads(geometry.offsets), gpu::fetches(regions_), gpu::reads(table.number),
-                                gpu::writes(store.filled), gpu::writes(store.layers)};
+  const std::vector bindings = {gpu::reads("Offsets", geometry.offsets), gpu::fetches("regions", regions_),
+                                gpu::reads("number", table.number), gpu::writes("Filled", store.filled),
+                                gpu::writes("Layers", store.layers)};
   const shaders::EmitLinksConstants emit{
       .size = pixels, .store_pixels = store.pixels(), .capacity = store.capacity, .windows = gpu::most_windows};
   frame.render("emit_links", {.extent = {store.extent.width, store.extent.height}}, bindings,
@@ -193,18 +168,15 @@ void RouteLinks::record(gpu::Frame& frame, const RegionBatch& batch, const Geome
                    draw_scene(draw, draw_, geometry, bindings, emit, end - first, first);
                  }
                });
-  frame.compute(count_, {gpu::reads(store.filled), gpu::writes(counters)},
+  frame.compute(count_, {gpu::reads("Filled", store.filled), gpu::writes("Counted", counters)},
                 shaders::CountLayersConstants{.pixels = batch.pixels, .limit = limit}, many_groups, 1);
 
   const auto lamps = to.keeps_direct ? table.records.lamps().count() : 0u;
   const auto look = [&](const gpu::ComputePipeline& pipeline, const LinkTable::Chunk& chunk,
-                        std::uint32_t first_job, std::uint32_t groups) {
-    frame.compute(pipeline,
-                  {gpu::reads(store.layers), gpu::reads(store.filled), gpu::fetches(regions_),
-                   gpu::reads(jobs_), gpu::fetches(receivers_), gpu::writes(doubts_), gpu::reads(map.position),
-                   gpu::reads(geometry.walls_first), gpu::fetches(geometry.walls), gpu::writes(chunk.links),
-                   gpu::writes(counters), gpu::reads(tiles_), gpu::writes(rest_), gpu::reads(to.direct.lamps()),
-                   gpu::writes(to.direct.sums())},
+                        std::vector<gpu::Binding> bindings, std::uint32_t first_job, std::uint32_t groups) {
+    bindings.insert(bindings.end(), {gpu::fetches("regions", regions_), gpu::fetches("receivers", receivers_),
+                                     gpu::writes("Counted", counters)});
+    frame.compute(pipeline, bindings,
                   shaders::RouteLinksConstants{.size = pixels,
                                                .store_pixels = store.pixels(),
                                                .texels = table.texels,
@@ -216,6 +188,13 @@ void RouteLinks::record(gpu::Frame& frame, const RegionBatch& batch, const Geome
                                                .half_pairs = table.pairs / 2},
                   groups, 1);
   };
+  const auto relinks = [&](const LinkTable::Chunk& chunk, std::initializer_list<gpu::Binding> more) {
+    std::vector bindings = {gpu::reads("Layers", store.layers), gpu::reads("Filled", store.filled),
+                            gpu::writes("Table", chunk.links), gpu::reads("Lamps", to.direct.lamps()),
+                            gpu::writes("Direct", to.direct.sums())};
+    bindings.insert(bindings.end(), more);
+    return bindings;
+  };
   // Jobs stand in the order of their pairs, and so of the table's chunks.
   std::vector<const LinkTable::Chunk*> touched;
   auto first = batch.jobs.begin();
@@ -224,13 +203,22 @@ void RouteLinks::record(gpu::Frame& frame, const RegionBatch& batch, const Geome
       return static_cast<std::uint32_t>(batch.regions[job.region].place.z) >= chunk.first_pair + chunk.pairs;
     });
     if (first == end) continue;
-    look(route_, chunk, static_cast<std::uint32_t>(first - batch.jobs.begin()),
-         static_cast<std::uint32_t>(end - first));
+    look(route_, chunk,
+         relinks(chunk,
+                 {gpu::reads("Jobs", jobs_), gpu::reads("Tiles", tiles_), gpu::writes("Doubts", doubts_)}),
+         static_cast<std::uint32_t>(first - batch.jobs.begin()), static_cast<std::uint32_t>(end - first));
     touched.push_back(&chunk);
     first = end;
   }
-  look(route_doubts_, to.chunks.front(), 0, many_groups);
-  for (const auto* chunk : touched) look(route_rest_, *chunk, 0, many_groups);
+  look(route_doubts_, to.chunks.front(),
+       {gpu::reads("Doubts", doubts_), gpu::fetches("walls", geometry.walls), gpu::writes("Rest", rest_)}, 0,
+       many_groups);
+  for (const auto* chunk : touched)
+    look(route_rest_, *chunk,
+         relinks(*chunk,
+                 {gpu::reads("Rest", rest_), gpu::reads("position", map.position),
+                  gpu::reads("WallsFirst", geometry.walls_first), gpu::fetches("walls", geometry.walls)}),
+         0, many_groups);
 }
 
 }  // namespace lichtveld::lightfield

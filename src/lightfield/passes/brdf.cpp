@@ -4,14 +4,14 @@
 
 namespace lichtveld::lightfield {
 
-Brdf::Brdf(const gpu::Device& device)
-    : reflect_(device, "brdf", brdf_comp, {.kinds = std::vector(5, gpu::Kind::storage_image)}) {}
+Brdf::Brdf(const gpu::Device& device) : reflect_(device, "brdf", shaders::brdf_comp) {}
 
 void Brdf::record(gpu::Frame& frame, const LightMap& map) const {
-  frame.compute(reflect_,
-                {gpu::reads(map.source), gpu::reads(map.albedo), gpu::reads(map.emission),
-                 gpu::reads(map.total_irradiance), gpu::writes(map.radiance)},
-                map.groups, map.groups);
+  frame.compute(
+      reflect_,
+      {gpu::reads("source", map.source), gpu::reads("albedo", map.albedo), gpu::reads("emission", map.emission),
+       gpu::reads("total_irradiance", map.total_irradiance), gpu::writes("radiance", map.radiance)},
+      map.groups, map.groups);
 }
 
 }  // namespace lichtveld::lightfield

@@ -17,19 +17,15 @@ constexpr auto rgba32f = vk::Format::eR32G32B32A32Sfloat;
 }  // namespace
 
 GeometryTexture::GeometryTexture(const gpu::Device& device)
-    : draw_(device, "geometry_texture", geometry_texture_vert, geometry_texture_frag,
-            {.kinds = {gpu::Kind::sampled_image}, .push_bytes = sizeof(shaders::GeometryConstants)},
+    : draw_(device, "geometry_texture", shaders::geometry_texture_vert, shaders::geometry_texture_frag,
             {.vertex_stride = sizeof(scene::Vertex),
              .attributes = {{0, rgb32f, offsetof(scene::Vertex, position)},
                             {1, rgb32f, offsetof(scene::Vertex, normal)},
                             {2, vk::Format::eR32G32Sfloat, offsetof(scene::Vertex, atlas)},
                             {3, vk::Format::eR32G32Sfloat, offsetof(scene::Vertex, colour)}},
              .colours = std::vector(5, rgba32f)}),
-      walls_(device, "geometry_texture", geometry_texture_walls_comp,
-             {.kinds = {gpu::Kind::storage_image, gpu::Kind::storage_image, gpu::Kind::storage_buffer,
-                        gpu::Kind::texel_buffer, gpu::Kind::storage_image}}),
-      gutter_(device, "geometry_texture", geometry_texture_gutter_comp,
-              {.kinds = std::vector(5, gpu::Kind::storage_image)}) {}
+      walls_(device, "geometry_texture", shaders::geometry_texture_walls_comp),
+      gutter_(device, "geometry_texture", shaders::geometry_texture_gutter_comp) {}
 
 void GeometryTexture::record(gpu::Frame& frame, const Geometry& geometry, const LightMap& map,
                              const Moves& moves) const {
@@ -38,7 +34,8 @@ void GeometryTexture::record(gpu::Frame& frame, const Geometry& geometry, const 
   for (const auto* image : {&map.position, &map.normal, &map.face_normal, &map.albedo, &map.emission})
     target.colours.push_back({image, cleared});
   std::vector<gpu::Binding> textures;
-  for (const auto& texture : geometry.textures) textures.push_back(gpu::sampled(texture, geometry.sampler));
+  for (const auto& texture : geometry.textures)
+    textures.push_back(gpu::sampled("base_colour", texture, geometry.sampler));
   frame.render(draw_.name(), target, textures, {&geometry.vertices, &geometry.indices}, [&](gpu::Draw& draw) {
     const auto offsets = geometry.offsets.as<glm::vec4>();
     draw.geometry(geometry.vertices, geometry.indices);
@@ -54,16 +51,18 @@ void GeometryTexture::record(gpu::Frame& frame, const Geometry& geometry, const 
     }
   });
   frame.compute(walls_,
-                {gpu::reads(map.position), gpu::reads(map.face_normal), gpu::reads(geometry.walls_first),
-                 gpu::fetches(geometry.walls), gpu::writes(map.near_walls)},
+                {gpu::reads("position", map.position), gpu::reads("face_normal", map.face_normal),
+                 gpu::reads("WallsFirst", geometry.walls_first), gpu::fetches("walls", geometry.walls),
+                 gpu::writes("near_walls", map.near_walls)},
                 map.groups, map.groups);
 }
 
 void GeometryTexture::find_shown(gpu::Frame& frame, const LightMap& map) const {
-  frame.compute(gutter_,
-                {gpu::reads(map.position), gpu::reads(map.face_normal), gpu::reads(map.cover),
-                 gpu::reads(map.source), gpu::writes(map.shown)},
-                map.groups, map.groups);
+  frame.compute(
+      gutter_,
+      {gpu::reads("position", map.position), gpu::reads("face_normal", map.face_normal),
+       gpu::reads("cover", map.cover), gpu::reads("source", map.source), gpu::writes("shown", map.shown)},
+      map.groups, map.groups);
 }
 
 }  // namespace lichtveld::lightfield

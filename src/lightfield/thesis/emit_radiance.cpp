@@ -81,12 +81,8 @@ LayerStore::LayerStore(const gpu::Device& device, const Settings& settings, std:
 }
 
 std::vector<gpu::Binding> LayerStore::bindings() const {
-  if (routed) return {gpu::sampled(*routed, fetch), gpu::sampled(*stencil, fetch)};
-  return {gpu::reads(*layers), gpu::reads(*filled)};
-}
-
-std::vector<gpu::Kind> LayerStore::kinds() const {
-  return std::vector(2, routed ? gpu::Kind::sampled_image : gpu::Kind::storage_buffer);
+  if (routed) return {gpu::sampled("abuffer", *routed, fetch)};
+  return {gpu::reads("Layers", *layers), gpu::reads("Filled", *filled)};
 }
 
 EmitRadiance::EmitRadiance(const gpu::Device& device, const LayerStore& store)
@@ -96,25 +92,16 @@ EmitRadiance::EmitRadiance(const gpu::Device& device, const LayerStore& store)
                                                        .addressModeV = vk::SamplerAddressMode::eClampToEdge}) {
   device.name(bilinear_, "lightfield/bilinear");
   const std::string name = "emit_radiance";
-  gpu::Interface interface {
-    .kinds = {gpu::Kind::storage_buffer, gpu::Kind::sampled_image}, .push_bytes = sizeof(shaders::EmitConstants)
-  };
   if (store.routed) {
     for (std::uint32_t sample = 0; sample < store.samples; ++sample)
-      set_stencil_.emplace_back(device, name, full_screen_vert, gpu::Spirv{}, gpu::Interface{},
+      set_stencil_.emplace_back(device, name, shaders::full_screen_vert, std::nullopt,
                                 set_stencil_state(store, sample));
-    count_.emplace_back(device, name, emit_radiance_count_comp,
-                        gpu::Interface{.kinds = {gpu::Kind::sampled_image, gpu::Kind::storage_buffer},
-                                       .push_bytes = sizeof(shaders::EmitConstants),
-                                       .specialisation = {store.samples}});
-  } else {
-    interface.kinds.insert(interface.kinds.end(), 3, gpu::Kind::storage_buffer);
+    count_.emplace_back(device, name, shaders::emit_radiance_count_comp, gpu::Specialisation{store.samples});
   }
   for (const bool double_sided : {false, true})
-    draw_.emplace_back(
-        device, name, emit_radiance_vert,
-        store.routed ? gpu::Spirv(emit_radiance_stencil_frag) : gpu::Spirv(emit_radiance_list_frag), interface,
-        emission_state(store, double_sided));
+    draw_.emplace_back(device, name, shaders::emit_radiance_vert,
+                       store.routed ? shaders::emit_radiance_stencil_frag : shaders::emit_radiance_list_frag,
+                       emission_state(store, double_sided));
 }
 
 void EmitRadiance::record(gpu::Frame& frame, const shaders::PsfView& view, const Geometry& geometry,
@@ -131,7 +118,8 @@ void EmitRadiance::record(gpu::Frame& frame, const shaders::PsfView& view, const
 void EmitRadiance::record_stencil(gpu::Frame& frame, const shaders::EmitConstants& constants,
                                   const Geometry& geometry, const LightMap& map, const LayerStore& store,
                                   const gpu::Buffer& counters) const {
-  const std::vector bindings = {gpu::reads(geometry.offsets), gpu::sampled(map.radiance, bilinear_)};
+  const std::vector bindings = {gpu::reads("Offsets", geometry.offsets),
+                                gpu::sampled("radiance", map.radiance, bilinear_)};
   const vk::ClearValue no_layer(vk::ClearColorValue(std::array{0.0f, 0.0f, 0.0f, shaders::NO_LAYER}));
   const vk::ClearValue zero{vk::ClearDepthStencilValue{}};
   const std::uint32_t routed_passes = store.capacity / store.samples;
@@ -153,8 +141,9 @@ void EmitRadiance::record_stencil(gpu::Frame& frame, const shaders::EmitConstant
   }
   if (constants.count != 0) {
     const auto groups = (store.size + shaders::GROUP - 1) / shaders::GROUP;
-    frame.compute(count_.front(), {gpu::sampled(*store.stencil, store.fetch), gpu::writes(counters)}, constants,
-                  groups, groups);
+    frame.compute(count_.front(),
+                  {gpu::sampled("stencil", *store.stencil, store.fetch), gpu::writes("Counted", counters)},
+                  constants, groups, groups);
   }
 }
 
@@ -162,8 +151,10 @@ void EmitRadiance::record_list(gpu::Frame& frame, const shaders::EmitConstants& 
                                const Geometry& geometry, const LightMap& map, const LayerStore& store,
                                const gpu::Buffer& counters) const {
   frame.clear("emit_radiance", *store.filled);
-  const std::vector bindings = {gpu::reads(geometry.offsets), gpu::sampled(map.radiance, bilinear_),
-                                gpu::writes(*store.filled), gpu::writes(*store.layers), gpu::writes(counters)};
+  const std::vector bindings = {gpu::reads("Offsets", geometry.offsets),
+                                gpu::sampled("radiance", map.radiance, bilinear_),
+                                gpu::writes("Filled", *store.filled), gpu::writes("Layers", *store.layers),
+                                gpu::writes("Counted", counters)};
   const gpu::Target target{.extent = {store.size, store.size}};
   frame.render("emit_radiance", target, bindings, {&geometry.vertices, &geometry.indices},
                [&](gpu::Draw& draw) { draw_scene(draw, draw_, geometry, bindings, constants); });

@@ -16,8 +16,7 @@
 
 namespace lichtveld::lightfield {
 
-// All surfaces along one direction, per pixel of size * size. Either kind is bound as two or one resources,
-// first in the shaders' binding order (abuffer_stencil.glsl, abuffer_list.glsl).
+// All surfaces along one direction, per pixel of size * size.
 struct LayerStore {
   LayerStore(const gpu::Device& device, const Settings& settings, std::uint32_t capacity);
 
@@ -29,8 +28,8 @@ struct LayerStore {
   // list: capacity places a pixel, and how many are filled
   std::unique_ptr<gpu::Buffer> layers, filled;
 
-  std::vector<gpu::Binding> bindings() const;  // for reading
-  std::vector<gpu::Kind> kinds() const;
+  // For reading, as abuffer_stencil.glsl and abuffer_list.glsl declare it.
+  std::vector<gpu::Binding> bindings() const;
 };
 
 class EmitRadiance {

@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "lichtveld/gpu/pipeline.hpp"
@@ -14,20 +15,24 @@
 
 namespace lichtveld::gpu {
 
-// A resource as a shader sees it.
+// A resource as a shader sees it. What a pass binds has to be what its shaders declare, in any order: a name
+// that they lack, one that is missing or given twice, another kind, reads() of what they may write or writes()
+// of what they declare `readonly` throws std::logic_error with the shaders' and the binding's names, in every
+// build.
 struct Binding {
+  std::string_view name;  // in the shader: the variable's; of a storage buffer the block's
   Kind kind;
   const Image* image = nullptr;
   const Buffer* buffer = nullptr;
   vk::Sampler sampler = {};
   bool writes = false;
 };
-Binding sampled(const Image& image, const vk::raii::Sampler& sampler);
-Binding reads(const Image& image);    // storage image
-Binding writes(const Image& image);   // storage image; also for reading and writing
-Binding reads(const Buffer& buffer);  // storage buffer
-Binding writes(const Buffer& buffer);
-Binding fetches(const Buffer& buffer);  // as texels
+Binding sampled(std::string_view name, const Image& image, const vk::raii::Sampler& sampler);
+Binding reads(std::string_view name, const Image& image);    // storage image
+Binding writes(std::string_view name, const Image& image);   // storage image; also for reading and writing
+Binding reads(std::string_view name, const Buffer& buffer);  // storage buffer
+Binding writes(std::string_view name, const Buffer& buffer);
+Binding fetches(std::string_view name, const Buffer& buffer);  // as texels
 
 // One colour or stencil attachment of a render pass: one layer of an image, cleared first unless it is kept.
 struct Attachment {
@@ -56,8 +61,9 @@ class Draw {
  public:
   // Up to most_windows. Without a call there is one: the whole target.
   void windows(const std::vector<Window>& windows);
-  // Binds a pipeline and its resources, which the pass must have listed.
+  // Binds a pipeline and its resources, which the pass must have listed; throws std::logic_error if it has not.
   void bind(const GraphicsPipeline& pipeline, const std::vector<Binding>& bindings = {});
+  // The bound pipeline's constants, once before its draws. Throws std::logic_error if they are of another size.
   template <typename Constants>
   void push(const Constants& constants) {
     push_bytes(std::as_bytes(std::span(&constants, 1)));
@@ -70,11 +76,15 @@ class Draw {
 
  private:
   friend class Frame;
-  explicit Draw(const vk::raii::CommandBuffer& commands) : commands_(commands) {}
+  Draw(const vk::raii::CommandBuffer& commands, const std::vector<Binding>& listed)
+      : commands_(commands), listed_(listed) {}
   void push_bytes(std::span<const std::byte> bytes);
+  const GraphicsPipeline& bound() const;
 
   const vk::raii::CommandBuffer& commands_;
+  const std::vector<Binding>& listed_;  // of the pass
   const GraphicsPipeline* bound_ = nullptr;
+  std::size_t pushed_ = 0;  // bytes, since it was bound
 };
 
 class Frame {
@@ -85,8 +95,9 @@ class Frame {
   Frame(const Frame&) = delete;
   Frame& operator=(const Frame&) = delete;
 
-  // A compute pass: bindings in the order of the pipeline's kinds, workgroups in x and y. Throws
-  // std::runtime_error where the device cannot start as many in x.
+  // A compute pass: what it binds, its push constants, workgroups in x and y. Throws std::logic_error where
+  // those are not what the shader declares, std::runtime_error where the device cannot start as many workgroups
+  // in x.
   template <typename Constants>
   void compute(const ComputePipeline& pipeline, const std::vector<Binding>& bindings,
                const Constants& constants, std::uint32_t groups_x, std::uint32_t groups_y) {

@@ -1,44 +1,34 @@
-// Shader pipelines. A pipeline's resources are push descriptors in set 0, bound in the order of its `kinds`.
+// Shader pipelines. What a pipeline's resources and push constants are, its shaders say; they are push
+// descriptors in set 0 and bound by their names.
 #pragma once
 
-#include <functional>
-#include <span>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "lichtveld/gpu/device.hpp"
+#include "lichtveld/gpu/shader.hpp"
 
 namespace lichtveld::gpu {
 
-using Spirv = std::span<const std::uint32_t>;
-
-// texel_buffer: read-only; a shader fetches a texel of up to four words at once, which costs a CPU device a
-// quarter of as many loads from a storage buffer.
-enum class Kind { sampled_image, storage_image, storage_buffer, texel_buffer };
-
 vk::DescriptorType descriptor_type(Kind kind);
 
-// What every pipeline is made of besides its shaders. Specialisation constant i has the id i.
-struct Interface {
-  std::vector<Kind> kinds = {};  // binding i has kinds[i]
-  std::uint32_t push_bytes = 0;  // of push constants, <= 128
-  std::vector<std::uint32_t> specialisation = {};
-};
+// Specialisation constants 0, 1, ..
+using Specialisation = std::vector<std::uint32_t>;
 
 class Pipeline {
  public:
   vk::Pipeline handle() const { return *pipeline_; }
   vk::PipelineLayout layout() const { return *layout_; }
   const std::string& name() const { return name_; }
-  const std::vector<Kind>& kinds() const { return kinds_; }
+  const Interface& interface() const { return interface_; }
   vk::PipelineBindPoint bind_point() const { return bind_point_; }
 
  protected:
-  Pipeline(const Device& device, std::string name, const Interface& interface,
-           vk::PipelineBindPoint bind_point);
+  Pipeline(const Device& device, std::string name, Interface interface, vk::PipelineBindPoint bind_point);
 
   std::string name_;
-  std::vector<Kind> kinds_;
+  Interface interface_;
   vk::PipelineBindPoint bind_point_;
   vk::raii::DescriptorSetLayout set_layout_ = nullptr;
   vk::raii::PipelineLayout layout_ = nullptr;
@@ -47,7 +37,8 @@ class Pipeline {
 
 class ComputePipeline : public Pipeline {
  public:
-  ComputePipeline(const Device& device, std::string name, Spirv shader, const Interface& interface);
+  ComputePipeline(const Device& device, std::string name, const Shader& shader,
+                  const Specialisation& specialisation = {});
 };
 
 struct VertexAttribute {
@@ -70,10 +61,11 @@ struct GraphicsState {
 
 class GraphicsPipeline : public Pipeline {
  public:
-  // An empty fragment shader makes a pipeline that only touches the stencil. Viewport, scissor and stencil
-  // reference are dynamic: Frame::render sets the first two to the target's extent.
-  GraphicsPipeline(const Device& device, std::string name, Spirv vertex, Spirv fragment,
-                   const Interface& interface, const GraphicsState& state);
+  // Without a fragment shader the pipeline only touches the stencil. Viewport, scissor and stencil reference
+  // are dynamic: Frame::render sets the first two to the target's extent.
+  GraphicsPipeline(const Device& device, std::string name, const Shader& vertex,
+                   const std::optional<Shader>& fragment, const GraphicsState& state,
+                   const Specialisation& specialisation = {});
 };
 
 }  // namespace lichtveld::gpu
