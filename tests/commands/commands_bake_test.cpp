@@ -118,7 +118,9 @@ TEST_F(Bake, LinksAreTheUsualMethodAndSayWhatTheyTake) {
   EXPECT_GT(report["error_estimate"], 0);
   const int lines = (report["texels_valid"].get<int>() + 15) / 16;  // 16 texels lie together
   EXPECT_EQ(report["memory_bytes"]["lightfield/links 0"], 2 * 12 * 16 * lines);
-  for (const char* pass : {"geometry_texture", "emit_links", "route_links", "gather", "brdf", "tone_map"})
+  for (const char* pass :
+       {"geometry_texture", "receivers", "emit_links", "emit_links_count", "route_links", "route_doubts",
+        "route_rest", "link_cover", "gather", "link_bounce", "link_change", "brdf", "tone_map"})
     EXPECT_GT(report["time_ms"]["passes"][pass]["calls"], 0) << pass;
 }
 

@@ -36,8 +36,8 @@ gpu::Buffer dark(const gpu::Device& device, const LinkTable& table) {
 Gather::Gather(const gpu::Device& device, const LinkTable& table)
     : device_(device),
       gather_(device, "gather", table.bits == 16 ? shaders::gather_16_comp : shaders::gather_32_comp),
-      end_(device, "gather", shaders::link_bounce_comp),
-      change_(device, "gather", shaders::link_change_comp),
+      end_(device, "link_bounce", shaders::link_bounce_comp),
+      change_(device, "link_change", shaders::link_change_comp),
       radiance_(dark(device, table)),
       sums_(storage(device, "lightfield/sums",
                     DirectionSet::parts * std::uint64_t{table.texels} * sizeof(glm::vec4), gpu::Memory::device,
