@@ -11,6 +11,7 @@
 #include "shaders/plain.frag.h"
 #include "shaders/uniform_buffer.comp.h"
 #include "shaders/whole.vert.h"
+#include "shaders/writing.frag.h"
 
 namespace lichtveld::gpu {
 namespace {
@@ -194,6 +195,12 @@ TEST_F(Bindings, OfBothShadersAreOneInterface) {
   frame_.to_host(sums_);
   frame_.submit_and_wait();
   EXPECT_EQ(sums_.as<std::uint32_t>().front(), 16u);  // pixels
+}
+
+TEST_F(Bindings, WhatEitherShaderWritesIsWritten) {
+  const auto pipeline = whole(shaders::writing_frag);
+  ASSERT_EQ(pipeline.interface().slots.size(), 1u);
+  EXPECT_TRUE(pipeline.interface().slots.front().writable);
 }
 
 TEST_F(Bindings, ShadersOfOnePipelineMustAgree) {
