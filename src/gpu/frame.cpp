@@ -23,12 +23,15 @@ vk::RenderingAttachmentInfo attachment_info(const Attachment& attachment, vk::Im
 
 }  // namespace
 
-Frame::Frame(const Device& device) : device_(device) {
+Frame::Frame(const Device& device, const std::vector<std::string>& labels)
+    : device_(device), labels_(labels.size()) {
   commands_ = std::move(vk::raii::CommandBuffers(device.handle(), {.commandPool = *device.commands(),
                                                                    .level = vk::CommandBufferLevel::ePrimary,
                                                                    .commandBufferCount = 1})
                             .front());
   commands_.begin({.flags = vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
+  if (has_labels())
+    for (const auto& label : labels) commands_.beginDebugUtilsLabelEXT({.pLabelName = label.c_str()});
 }
 
 Frame::~Frame() {
@@ -40,6 +43,10 @@ Frame::~Frame() {
   }
 }
 
+bool Frame::has_labels() const {
+  return device_.handle().getDispatcher()->vkCmdBeginDebugUtilsLabelEXT != nullptr;
+}
+
 void Frame::pass(const std::string& name, const std::function<void()>& record) {
   const auto query = static_cast<std::uint32_t>(2 * timed_.size());
   if (query % queries_a_pool == 0) {
@@ -49,14 +56,13 @@ void Frame::pass(const std::string& name, const std::function<void()>& record) {
     commands_.resetQueryPool(*queries_.back(), 0, queries_a_pool);
   }
   timed_.push_back({name, query});
-  const bool labels = device_.handle().getDispatcher()->vkCmdBeginDebugUtilsLabelEXT != nullptr;
-  if (labels) commands_.beginDebugUtilsLabelEXT({.pLabelName = name.c_str()});
+  if (has_labels()) commands_.beginDebugUtilsLabelEXT({.pLabelName = name.c_str()});
   // Barriers stand inside the timestamps: waiting for its inputs is a part of a pass.
   commands_.writeTimestamp2(Stage::eAllCommands, *queries_.back(), query % queries_a_pool);
   flush_barriers();
   record();
   commands_.writeTimestamp2(Stage::eAllCommands, *queries_.back(), query % queries_a_pool + 1);
-  if (labels) commands_.endDebugUtilsLabelEXT();
+  if (has_labels()) commands_.endDebugUtilsLabelEXT();
 }
 
 void Frame::compute_bytes(const ComputePipeline& pipeline, const std::vector<Binding>& bindings,
@@ -160,6 +166,8 @@ void Frame::to_host(const Buffer& buffer) {
 
 void Frame::submit() {
   flush_barriers();
+  if (has_labels())
+    for (std::size_t label = 0; label < labels_; ++label) commands_.endDebugUtilsLabelEXT();
   commands_.end();
   vk::raii::Fence fence(device_.handle(), vk::FenceCreateInfo{});
   const vk::CommandBufferSubmitInfo submit{.commandBuffer = *commands_};

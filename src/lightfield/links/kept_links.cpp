@@ -1,5 +1,6 @@
 #include "links/kept_links.hpp"
 
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
@@ -32,6 +33,11 @@ scene::Box grown(const scene::Box& box, float share) {
   return {box.min - by, box.max + by};
 }
 
+// A batch's regions stand in the order of their pairs.
+std::string directions_of(const RegionBatch& batch) {
+  return fmt::format("pairs of directions {}..{}", batch.regions.front().place.z, batch.regions.back().place.z);
+}
+
 // What shaders fetch at once of each pair.
 gpu::Buffer upload_directions(const gpu::Device& device, std::span<const Direction> pairs) {
   std::vector<glm::vec4> directions;
@@ -61,7 +67,7 @@ KeptLinks::KeptLinks(const gpu::Device& device, const scene::Scene& scene, const
 
 void KeptLinks::link(const scene::Offsets& to, const Moves& moves, Solution& solution) {
   const auto sphere_before = geometry_.sphere;
-  gpu::Frame placing(device_);
+  gpu::Frame placing(device_, {"links", "place"});
   geometry_.place(to, settings_.raster());
   if (moves.all) placing.clear("route_links", map_.cover, {});
   geometry_texture_.record(placing, geometry_, map_, moves);
@@ -92,7 +98,7 @@ void KeptLinks::link(const scene::Offsets& to, const Moves& moves, Solution& sol
 
 void KeptLinks::sum_direct() {
   if (std::exchange(done_.direct_summed, true)) return;
-  gpu::Frame frame(device_);
+  gpu::Frame frame(device_, {"links", "direct light"});
   direct_.sum(frame, map_, table_, directions_);
   frame.submit_and_wait();
 }
@@ -140,7 +146,7 @@ void KeptLinks::route(const std::vector<Part>& parts, const TileBoxes& tiles, So
     auto& counted = counters_.as<shaders::Counters>().front();
     counted = {};
     counted.layers_max = solution.depth_layers_max;
-    gpu::Frame frame(device_);
+    gpu::Frame frame(device_, {"links", "find links", directions_of(batches[batch])});
     if (!std::exchange(layered().received, true)) layered().route.read_receivers(frame, map_, table_);
     layered().route.record(frame, batches[batch], geometry_, map_, table_, {table_.chunks, direct_, true},
                            layered().store, pixels, settings_.layers, counters_);
@@ -194,14 +200,14 @@ LinkCheck KeptLinks::check_two() {
   auto& counted = counters_.as<shaders::Counters>().front();
   counted = {};
   for (const auto& batch : pack(parts, layered().store.extent, table_.boxes(done_.linked_at))) {
-    gpu::Frame frame(device_);
+    gpu::Frame frame(device_, {"links", "check"});
     counted.doubts = counted.rest = 0;
     layered().route.record(frame, batch, geometry_, map_, table_, {{&*again_, 1}, direct_, false},
                            layered().store, pixels, settings_.layers, counters_);
     frame.to_host(counters_);
     frame.submit_and_wait();
   }
-  gpu::Frame frame(device_);
+  gpu::Frame frame(device_, {"links", "check"});
   layered().route.compare(frame, table_, *chunk, first, *again_, counters_);
   frame.to_host(counters_);
   frame.submit_and_wait();

@@ -1,5 +1,7 @@
 #include "links/links.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <limits>
 
@@ -36,13 +38,13 @@ double Links::error_estimate() const {
 }
 
 void Links::start() {
-  gpu::Frame frame(device_);
+  gpu::Frame frame(device_, {"links", "start"});
   gather_.start(frame, links_);
   frame.submit_and_wait();
 }
 
 void Links::bounce(Solution& solution) {
-  gpu::Frame frame(device_);
+  gpu::Frame frame(device_, {"links", fmt::format("bounce {}", solution.bounces + 1), "all directions"});
   gather_.bounce(frame, links_);
   frame.submit_and_wait();
   ++solution.bounces;
@@ -54,7 +56,8 @@ void Links::bounce(Solution& solution) {
 // leaves of the others what surfaces reflected some steps ago. It says nothing about what is missing.
 void Links::part_bounce(Solution& solution) {
   const auto parts = static_cast<std::uint32_t>(settings_.links.step_bounces * DirectionSet::parts);
-  gpu::Frame frame(device_);
+  gpu::Frame frame(device_, {"links", fmt::format("bounce {}", solution.bounces + 1),
+                             fmt::format("{} parts of the directions from {}", parts, next_part_)});
   gather_.part_bounce(frame, links_, next_part_, parts);
   frame.submit_and_wait();
   next_part_ = (next_part_ + parts) % DirectionSet::parts;
@@ -91,7 +94,7 @@ bool Links::converge(Light before, const Enough& enough, Solution& solution) {
 }
 
 void Links::present() {
-  gpu::Frame frame(device_);
+  gpu::Frame frame(device_, {"links", "present"});
   brdf_.record(frame, links_.map());
   links_.find_shown(frame);
   tone_map_.record(frame, links_.map());

@@ -1,5 +1,6 @@
 #include "thesis/thesis.hpp"
 
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
@@ -14,6 +15,11 @@ namespace {
 
 // PSFs a submission: bounds its queries and how long a GPU is held at a stretch.
 constexpr std::uint32_t psfs_a_frame = 128;
+
+// Of the bounce that follows.
+std::string bounce_label(const Solution& solution) {
+  return fmt::format("bounce {}", solution.bounces + 1);
+}
 
 }  // namespace
 
@@ -49,7 +55,7 @@ bool Thesis::compute(Light, const Moves& moves, const Enough&, Solution& solutio
   while (!done(solution)) {
     render_bounce(solution);  // for each PSF: emit_radiance, stencil_routing, blend
     if (solution.bounces == 0 && widen(solution)) continue;  // layers would have been lost: again, with more
-    end_bounce();                                            // blend into the total; brdf
+    end_bounce(solution);                                    // blend into the total; brdf
     ++solution.bounces;
     solution.residual = convergence.measure(irradiance());
   }
@@ -82,7 +88,7 @@ bool Thesis::done(const Solution& solution) const {
 void Thesis::begin(const Moves& moves) {
   if (!layered_) layered_ = std::make_unique<Layered>(device_, settings_, capacity_for(settings_.layers));
   geometry_.place(offsets(), settings_.raster());
-  gpu::Frame frame(device_);
+  gpu::Frame frame(device_, {"thesis", "set up"});
   frame.clear("blend", map_.total_irradiance, {});
   clear_bounce(frame);
   geometry_texture_.record(frame, geometry_, map_, moves);
@@ -107,7 +113,8 @@ void Thesis::render_psfs(Range range, bool count, Solution& solution) {
   auto& counted = counters_.as<shaders::Counters>().front();
   counted = {};
   counted.layers_max = solution.depth_layers_max;
-  gpu::Frame frame(device_);
+  gpu::Frame frame(device_, {"thesis", bounce_label(solution),
+                             fmt::format("directions {}..{}", range.first, range.end - 1)});
   for (auto psf = range.first; psf < range.end; ++psf) {
     const auto view = psf_view(directions_[psf], geometry_.sphere, layered_->store.size);
     layered_->emit.record(frame, view, geometry_, map_, layered_->store, settings_.layers, count, counters_);
@@ -135,7 +142,7 @@ bool Thesis::widen(const Solution& solution) {
                solution.overflow_pixels, settings_.layers, needed);
   layered_.reset();  // first, so that both need not fit
   layered_ = std::make_unique<Layered>(device_, settings_, capacity_for(needed));
-  gpu::Frame frame(device_);
+  gpu::Frame frame(device_, {"thesis", bounce_label(solution)});
   clear_bounce(frame);
   frame.submit_and_wait();
   return true;
@@ -146,15 +153,15 @@ void Thesis::clear_bounce(gpu::Frame& frame) const {
   frame.clear("stencil_routing", map_.cover, {});
 }
 
-void Thesis::end_bounce() {
-  gpu::Frame frame(device_);
+void Thesis::end_bounce(const Solution& solution) {
+  gpu::Frame frame(device_, {"thesis", bounce_label(solution)});
   blend_.bounce_into_total(frame, sums_, map_);
   brdf_.record(frame, map_);
   frame.submit_and_wait();
 }
 
 void Thesis::present() {
-  gpu::Frame frame(device_);
+  gpu::Frame frame(device_, {"thesis", "present"});
   geometry_texture_.find_shown(frame, map_);
   tone_map_.record(frame, map_);
   frame.submit_and_wait();
@@ -166,7 +173,7 @@ void Thesis::show_stages() {
                            {.width = layered_->store.size, .height = layered_->store.size},
                            vk::Format::eR32G32B32A32Sfloat,
                            vk::ImageUsageFlagBits::eStorage | vk::ImageUsageFlagBits::eTransferSrc);
-    gpu::Frame frame(device_);
+    gpu::Frame frame(device_, {"thesis", "dump"});
     layered_->show.record(frame, layered_->store, layer, shown);
     frame.submit_and_wait();
     observer_("emit_radiance.layer" + std::to_string(layer), {device_, shown});

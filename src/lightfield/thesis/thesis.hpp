@@ -44,7 +44,7 @@ class Thesis final : public LightField {
   void render_psfs(Range range, bool count, Solution& solution);
   bool widen(const Solution& solution);
   void clear_bounce(gpu::Frame& frame) const;
-  void end_bounce();
+  void end_bounce(const Solution& solution);
   void present();
   void show_stages();
   void show_result();

@@ -89,8 +89,9 @@ class Draw {
 
 class Frame {
  public:
-  // Starts recording. Times of its passes are added to Device::times() when it has been waited for.
-  explicit Frame(const Device& device);
+  // Starts recording. Times of its passes are added to Device::times() when it has been waited for. Captures show its
+  // passes under these labels, outermost first: what they are a part of.
+  explicit Frame(const Device& device, const std::vector<std::string>& labels = {});
   ~Frame();
   Frame(const Frame&) = delete;
   Frame& operator=(const Frame&) = delete;
@@ -144,6 +145,7 @@ class Frame {
     std::uint32_t query;  // the start's; the end's follows
   };
 
+  bool has_labels() const;
   void pass(const std::string& name, const std::function<void()>& record);
   void compute_bytes(const ComputePipeline& pipeline, const std::vector<Binding>& bindings,
                      std::span<const std::byte> constants, std::uint32_t groups_x, std::uint32_t groups_y);
@@ -153,6 +155,7 @@ class Frame {
   void flush_barriers();
 
   const Device& device_;
+  const std::size_t labels_;  // around all passes
   vk::raii::CommandBuffer commands_ = nullptr;
   vk::raii::Fence submitted_ = nullptr;  // until it has been waited for
   std::vector<vk::raii::QueryPool> queries_;
