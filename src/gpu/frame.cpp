@@ -180,7 +180,7 @@ void Frame::wait() {
   const auto start = std::chrono::steady_clock::now();
   if (device_.handle().waitForFences(*fence, true, UINT64_MAX) != vk::Result::eSuccess)
     throw std::runtime_error("the device did not finish a frame");
-  device_.times().waited(std::chrono::steady_clock::now() - start);
+  const auto waited = std::chrono::steady_clock::now() - start;
   std::vector<std::uint64_t> ticks;
   for (std::size_t pool = 0; pool < queries_.size(); ++pool) {
     const auto used = std::min<std::size_t>(queries_a_pool, 2 * timed_.size() - pool * queries_a_pool);
@@ -189,9 +189,14 @@ void Frame::wait() {
                                                  vk::QueryResultFlagBits::e64 | vk::QueryResultFlagBits::eWait);
     ticks.insert(ticks.end(), values.begin(), values.end());
   }
-  for (const Timed& timed : timed_)
-    device_.times().add_pass(timed.pass, static_cast<double>(ticks[timed.query + 1] - ticks[timed.query]) *
-                                             device_.timestamp_period() * 1e-6);
+  double all_ms = 0;
+  for (const Timed& timed : timed_) {
+    const auto took = ticks[timed.query + 1] - ticks[timed.query];
+    const double ms = static_cast<double>(took) * device_.timestamp_period() * 1e-6;
+    device_.times().add_pass(timed.pass, ms);
+    all_ms += ms;
+  }
+  device_.times().waited(waited, all_ms);
 }
 
 }  // namespace lichtveld::gpu

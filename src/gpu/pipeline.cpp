@@ -68,6 +68,7 @@ Pipeline::Pipeline(const Device& device, std::string name, Interface interface,
 ComputePipeline::ComputePipeline(const Device& device, std::string name, const Shader& shader,
                                  const Specialisation& specialisation)
     : Pipeline(device, std::move(name), reflect(shader), vk::PipelineBindPoint::eCompute) {
+  const TimeLedger::Stage stage(device.times(), "pipelines");
   const auto module = make_module(device, shader);
   const SpecialisationInfo specialised(specialisation);
   pipeline_ = {device.handle(), nullptr,
@@ -84,6 +85,7 @@ GraphicsPipeline::GraphicsPipeline(const Device& device, std::string name, const
                                    const Specialisation& specialisation)
     : Pipeline(device, std::move(name), fragment ? merge(reflect(vertex), reflect(*fragment)) : reflect(vertex),
                vk::PipelineBindPoint::eGraphics) {
+  const TimeLedger::Stage stage(device.times(), "pipelines");
   const SpecialisationInfo specialised(specialisation);
   const auto vertex_module = make_module(device, vertex);
   vk::raii::ShaderModule fragment_module = nullptr;

@@ -1,5 +1,6 @@
 #include "lichtveld/gpu/times.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace lichtveld::gpu {
@@ -39,8 +40,11 @@ void TimeLedger::add_pass(const std::string& name, double gpu_ms) {
   time.gpu_ms += gpu_ms;
 }
 
-void TimeLedger::waited(std::chrono::duration<double, std::milli> time) {
+void TimeLedger::waited(std::chrono::duration<double, std::milli> time, double gpu_ms) {
   if (!running_.empty()) running_.back().others += time;
+  auto& waits = times_.host["waits"];
+  ++waits.calls;
+  waits.ms += std::max(0.0, time.count() - gpu_ms);
 }
 
 }  // namespace lichtveld::gpu

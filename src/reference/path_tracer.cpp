@@ -109,7 +109,8 @@ Irradiance trace(const scene::Scene& scene, const std::vector<glm::vec3>& offset
     RayCount count;
     for (std::size_t i; !stop.stop_requested() && (i = work.next++) < texels.size(); ++work.done) {
       const auto& [index, hit] = texels[i];
-      const Estimate texel = estimate(tracer, geometry.receiver(hit), index, settings, count);
+      const Estimate texel =
+          estimate(tracer, geometry.receiver(scene::pulled_inside(hit)), index, settings, count);
       result.texels[index] = glm::vec4(texel.irradiance, 1);
       result.standard_error[index] = texel.standard_error;
     }

@@ -49,6 +49,12 @@ glm::vec3 sample_srgb(const Texture& texture, glm::vec2 at) {
   return glm::mix(upper, lower, y.share);
 }
 
+SurfacePoint pulled_inside(const SurfacePoint& point) {
+  const glm::vec2 within = glm::clamp(point.barycentric, 0.0f, 1.0f);
+  const float sum = within.x + within.y;
+  return {point.triangle, sum > 1 ? within / sum : within};
+}
+
 glm::vec3 weights(const SurfacePoint& point) {
   return {1 - point.barycentric.x - point.barycentric.y, point.barycentric.x, point.barycentric.y};
 }

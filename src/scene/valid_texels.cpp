@@ -41,14 +41,11 @@ bool covers(const std::array<Snapped, 3>& p, const Snapped& centre) {
   return true;
 }
 
-// The barycentric coordinates of an atlas coordinate, pulled into the triangle where snapping put it outside.
+// The barycentric coordinates of an atlas coordinate.
 glm::vec2 barycentric(const std::array<glm::dvec2, 3>& uv, glm::dvec2 at) {
   const glm::dvec2 a = uv[1] - uv[0], b = uv[2] - uv[0], p = at - uv[0];
   const double area = a.x * b.y - a.y * b.x;
-  glm::dvec2 result((p.x * b.y - p.y * b.x) / area, (a.x * p.y - a.y * p.x) / area);
-  result = glm::clamp(result, 0.0, 1.0);
-  const double sum = result.x + result.y;
-  return sum > 1 ? result / sum : result;
+  return glm::dvec2((p.x * b.y - p.y * b.x) / area, (a.x * p.y - a.y * p.x) / area);
 }
 
 // The texels whose centres can lie between two snapped coordinates, as [begin, end).

@@ -124,6 +124,21 @@ TEST_F(Bake, LinksAreTheUsualMethodAndSayWhatTheyTake) {
     EXPECT_GT(report["time_ms"]["passes"][pass]["calls"], 0) << pass;
 }
 
+// Passes on the device and stages on the host are all of the time there is.
+TEST_F(Bake, PartsOfItsTimeSumToTheTotal) {
+  for (const char* method : {"links", "thesis"}) {
+    bake("E.exr", std::string("--psf 96 --method ") + method + " --report " + path("r.json"));
+    const auto time = json::parse(std::ifstream(path("r.json")))["time_ms"];
+    double sum = 0;
+    for (const auto& pass : time["passes"]) sum += pass["gpu_ms"].get<double>();
+    for (const auto& stage : time["host"]) sum += stage["ms"].get<double>();
+    EXPECT_NEAR(sum / time["total"].get<double>(), 1, 0.1) << time.dump(1);
+    for (const char* stage : {"texel_records", "pipelines", "find_walls", "set_up"})
+      EXPECT_GT(time["host"][stage]["ms"], 0) << stage;
+    EXPECT_GT(time["passes"]["upload"]["calls"], 0) << "what set-up costs the device is there, too";
+  }
+}
+
 TEST_F(Bake, OptionsOfTheThesisAskForIt) {
   for (const char* option : {"--abuffer list", "--sort scan"}) {
     bake("E.exr", std::string(option) + " --report " + path("r.json"));

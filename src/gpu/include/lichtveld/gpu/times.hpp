@@ -54,8 +54,9 @@ class TimeLedger {
   }
 
   void add_pass(const std::string& name, double gpu_ms);
-  // The host has waited for the device, whose passes tell what for.
-  void waited(std::chrono::duration<double, std::milli> time);
+  // The host has waited so long for the device, whose passes took `gpu_ms` of it; what is more, for a device
+  // that was slow to begin and to answer, is the stage `waits`.
+  void waited(std::chrono::duration<double, std::milli> time, double gpu_ms);
 
   const Times& so_far() const { return times_; }
 

@@ -7,7 +7,7 @@ namespace lichtveld::scene {
 
 struct AtlasTexel {
   std::uint32_t index;  // row * size + column
-  SurfacePoint at;
+  SurfacePoint at;      // its centre, which snapping may have put a hair outside of the triangle
 };
 
 // The valid texels of an atlas of size * size, by index: those whose centre lies on a chart, by the rules of

@@ -10,6 +10,9 @@ struct SurfacePoint {
   glm::vec2 barycentric;   // weighs the triangle's second and third corner
 };
 
+// The point, or one in the triangle where it lies outside.
+SurfacePoint pulled_inside(const SurfacePoint& point);
+
 // Of the three corners; they sum to 1.
 glm::vec3 weights(const SurfacePoint& point);
 
