@@ -1,6 +1,7 @@
 # lichtveld_shaders(TARGET FOLDER): compiles each shader below FOLDER to SPIR-V and gives TARGET a header for each,
 # "shaders/NAME.STAGE.h", with the gpu::Shader lichtveld::shaders::NAME_STAGE, which knows its own name. Names are unique
-# over all folders. A shader includes what lies beside it or in shaders/include.
+# over all folders. A shader includes what lies beside it or in shaders/include. TARGET_shaders makes these headers
+# alone, for tools that only read the code.
 function(lichtveld_shaders target root)
   set(generated ${CMAKE_CURRENT_BINARY_DIR}/generated)
   file(MAKE_DIRECTORY ${generated}/spirv)
@@ -30,6 +31,7 @@ constexpr gpu::Shader @variable@{"@shader@", @variable@_words};
 ]])
     list(APPEND headers ${words})
   endforeach()
+  add_custom_target(${target}_shaders DEPENDS ${headers})
   target_sources(${target} PRIVATE ${headers})
   target_include_directories(${target} PRIVATE ${generated})
 endfunction()
