@@ -52,17 +52,21 @@ std::string terminal(const std::string& format, const Chart& chart) {
   return fmt::format("set terminal pngcairo size {},{} font 'sans-serif,11'\n", chart.width, chart.height);
 }
 
-// Runs gnuplot in the scratch folder, and returns the picture there.
-fs::path drawn(const std::string& format, const Chart& chart, const Scratch& scratch) {
+std::string contents_of(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return std::string(std::istreambuf_iterator<char>(in), {});
+}
+
+// Runs gnuplot in the scratch folder, and returns the picture's bytes.
+std::string drawn(const std::string& format, const Chart& chart, const Scratch& scratch) {
   const auto picture = chart.name + "." + format, script = picture + ".gnuplot";
   files::write_text(scratch.path() / script, terminal(format, chart) + "set output " + plot_text(picture) +
                                                  "\n" + "set encoding utf8\n" + chart.script +
                                                  "unset output\n");
   const auto command =
       fmt::format("cd {} && gnuplot {} 2>complaints", escaped(scratch.path().string()), escaped(script));
-  if (std::system(command.c_str()) == 0) return scratch.path() / picture;
-  std::ifstream complaints(scratch.path() / "complaints");
-  throw std::runtime_error("gnuplot failed: " + std::string(std::istreambuf_iterator<char>(complaints), {}));
+  if (std::system(command.c_str()) == 0) return contents_of(scratch.path() / picture);
+  throw std::runtime_error("gnuplot failed: " + contents_of(scratch.path() / "complaints"));
 }
 
 }  // namespace
@@ -75,11 +79,8 @@ void draw(const Chart& chart, const fs::path& folder) {
   try {
     const Scratch scratch;
     for (const auto& [name, bytes] : chart.data) files::write_text(scratch.path() / name, bytes);
-    for (const auto& format : chart.formats) {
-      const auto picture = drawn(format, chart, scratch);
-      files::write_whole(folder / picture.filename(),
-                         [&](const fs::path& file) { fs::copy_file(picture, file); });
-    }
+    for (const auto& format : chart.formats)
+      files::write_text(folder / (chart.name + "." + format), drawn(format, chart, scratch));
   } catch (const std::exception& error) {
     spdlog::warn("no {}: {} (the tables are written)", chart.name, error.what());
   }

@@ -28,12 +28,34 @@ BakeJob::NodeMove parse_move(const std::string& text, const scene::Scene& scene)
   return move;
 }
 
-void bake(const BakeOptions& options) {
-  lightfield::check(options.settings);
+// Whether --dump may write there: bake_light_field.cpp names its files by stages, as in brdf.radiance.exr.
+bool is_of_a_pass(const std::filesystem::path& file, const std::filesystem::path& dump) {
+  const auto target = files::target_of(file);
+  return target.parent_path() == files::target_of(dump) && target.extension() == ".exr" &&
+         target.stem().has_extension();
+}
+
+// All of them before long work, and so that none is written over another or over the scene.
+void check_outputs(const BakeOptions& options) {
   files::check_place(options.out, ".exr");
   if (!options.png.empty()) files::check_place(options.png, ".png");
   if (!options.report.empty()) files::check_place(options.report);
-  if (!options.dump.empty()) files::make_folder(options.dump);
+  std::vector<files::NamedFile> files = {{"the scene", options.scene}};
+  for (const auto& [name, file] :
+       {std::pair{"--out", options.out}, {"--png", options.png}, {"--report", options.report}})
+    if (!file.empty()) files.push_back({name, file});
+  files::check_distinct(files);
+  if (options.dump.empty()) return;
+  for (const auto& [name, file] : files)
+    if (is_of_a_pass(file, options.dump))
+      throw UsageError(name + " " + file.string() +
+                       ": files PASS.OUTPUT.exr of the folder --dump are the passes'; name it otherwise");
+  files::make_folder(options.dump);
+}
+
+void bake(const BakeOptions& options) {
+  lightfield::check(options.settings);
+  check_outputs(options);
   if (options.dump_psf >= options.settings.psf)
     throw UsageError("--dump-psf " + std::to_string(options.dump_psf) + ": the directions are numbered 0.." +
                      std::to_string(options.settings.psf - 1));

@@ -39,6 +39,7 @@ TEST_P(BadUsage, IsNamed) {
 }
 
 const std::string bake = "bake " + cornell + " --out OUT --size 32 --psf 8 --bounces 1 ";
+const std::string long_name(300, 'x');
 
 INSTANTIATE_TEST_SUITE_P(
     CommandLine, BadUsage,
@@ -115,6 +116,19 @@ INSTANTIATE_TEST_SUITE_P(
                "bake " + cornell + " --out /tmp --size 32 --psf 8 --bounces 1",
                2,
                {"/tmp", "it is a folder"}},
+        BadUse{"OutNameTooLong",
+               "bake " + cornell + " --out /tmp/" + long_name + ".exr",
+               2,
+               {"too long", "shorter"}},
+        BadUse{"ReportNameTooLong", bake + "--report OUT" + long_name, 2, {"too long", "shorter"}},
+        BadUse{"DumpNameTooLong", bake + "--method thesis --dump /tmp/" + long_name, 2, {"folder", "too long"}},
+        BadUse{"BenchOutNameTooLong", "bench --out /tmp/" + long_name, 2, {"folder", "too long"}},
+        BadUse{"OutAndReportAreOne", bake + "--report OUT", 2, {"--out", "--report", "same file", "its own"}},
+        BadUse{"OutAndReportAreOneSpeltOtherwise", bake + "--report OUT/../E.exr", 2, {"same file"}},
+        BadUse{"OutIsOfADumpedPass",
+               "bake " + cornell + " --method thesis --out /tmp/brdf.radiance.exr --dump /tmp",
+               2,
+               {"--out", "--dump", "brdf.radiance.exr"}},
         BadUse{"BenchSort", "bench --sort scan,magic", 2, {"magic", "bitonic|compare-swap|scan"}},
         BadUse{"BenchWeights", "bench --weights heavy", 2, {"heavy", "solid-angle|equal"}},
         BadUse{"BenchPsfSize", "bench --psf-size 3y", 2, {"3y", "2x"}},
@@ -192,6 +206,43 @@ TEST(BadOutput, AnOlderFileSurvivesAFailureToWrite) {
   EXPECT_EQ(std::filesystem::file_size(old), 15u);
   const std::filesystem::directory_iterator files(folder.path());
   EXPECT_EQ(std::distance(begin(files), end(files)), 1) << "a temporary file is left behind";
+}
+
+TEST(BadOutput, TheSceneIsNeverWrittenOver) {
+  const TempFolder folder;
+  const auto scene = folder.path() / "room.glb", link = folder.path() / "E.exr";
+  std::filesystem::copy_file(cornell, scene);
+  std::filesystem::create_symlink("room.glb", link);
+  const std::string quick = "bake " + scene.string() + " --size 32 --psf 8 --bounces 1 ";
+  for (const auto& outputs : {"--out " + link.string(),
+                              "--out " + (folder.path() / "2.exr").string() + " --report " + scene.string()}) {
+    const auto ran = run(quick + outputs);
+    EXPECT_EQ(ran.status, 2) << ran.output;
+    EXPECT_THAT(ran.output, AllOf(HasSubstr("the scene"), HasSubstr("same file")));
+  }
+  EXPECT_EQ(std::filesystem::file_size(scene), std::filesystem::file_size(cornell));
+}
+
+TEST(Outputs, AreWrittenIntoDevices) {
+  const TempFolder folder;
+  const auto ran = run("bake " + cornell + " --size 32 --psf 8 --bounces 1 --report /dev/null --out " +
+                       (folder.path() / "E.exr").string());
+  EXPECT_EQ(ran.status, 0) << ran.output;
+  EXPECT_TRUE(std::filesystem::is_character_file("/dev/null"));
+}
+
+TEST(Outputs, WaitForAPipesReaderUntilASignal) {
+  const TempFolder folder;
+  const auto pipe = (folder.path() / "pipe").string(), out = (folder.path() / "E.exr").string();
+  const auto command = "bake " + cornell + " --size 32 --psf 8 --bounces 1 --report " + pipe + " --out " + out;
+  const auto read = shell("mkfifo " + pipe + "; cat " + pipe + " & " LICHTVELD_BINARY " " + command + "; wait");
+  EXPECT_THAT(read.output, HasSubstr("texels_valid"));
+  // Waits for its first output, so for the moment when only the pipe is left.
+  const auto alone = shell("rm " + out + "; " LICHTVELD_BINARY " " + command + " & p=$!; until [ -e " + out +
+                           " ] || ! kill -0 $p; do sleep 0.1; done; sleep 0.2; kill -INT $p; kill $p; wait $p");
+  EXPECT_EQ(alone.status, 128 + SIGTERM) << alone.output;  // a shell's job in the background ignores SIGINT
+  const std::filesystem::directory_iterator files(folder.path());
+  EXPECT_EQ(std::distance(begin(files), end(files)), 2) << "a temporary file is left behind";
 }
 
 TEST(Serve, EndsOnASecondSignalWhateverItDoes) {
