@@ -1,4 +1,4 @@
-import type { Knowledge } from './main';
+import type { Knowledge } from './knowledge';
 import type { Room } from './room';
 import type { MapStatistics } from './statistics';
 

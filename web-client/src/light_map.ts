@@ -8,7 +8,7 @@ export class LightMap {
     this.texture.channel = 1; // glTF's TEXCOORD_1
     this.texture.minFilter = this.texture.magFilter = LinearFilter;
     this.texture.generateMipmaps = false;
-    // The PNG is sRGB, and so is the screen: values come out as sent. To decode and encode them again only for filtering
+    // The map is sRGB, and so is the screen: values come out as sent. To decode and encode them again only for filtering
     // between texels would double what a pixel costs where the processor draws.
     this.texture.colorSpace = NoColorSpace;
   }
@@ -35,9 +35,4 @@ export class LightMap {
     context?.drawImage(picture, 0, 0);
     return context?.getImageData(0, 0, picture.width, picture.height);
   }
-}
-
-/** Decodes a map; rejects what is no picture. Row 0 of the PNG becomes the texture's v = 0, as glTF has it. */
-export function decodeMap(png: Blob): Promise<ImageBitmap> {
-  return createImageBitmap(png, { premultiplyAlpha: 'none', colorSpaceConversion: 'none' });
 }

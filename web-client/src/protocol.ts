@@ -1,3 +1,5 @@
+import { formatNames, recognise, type EncodedMap } from './map_format';
+
 /**
  * Data channel v1, as pure functions over what comes in.
  *
@@ -20,7 +22,7 @@ export interface Place {
 }
 
 export type Received =
-  | { readonly kind: 'map'; readonly png: Blob }
+  | ({ readonly kind: 'map' } & EncodedMap)
   | { readonly kind: 'places'; readonly places: readonly Place[] }
   | { readonly kind: 'refused'; readonly reason: string };
 
@@ -36,8 +38,6 @@ export function parsePlaces(text: string): Place[] | undefined {
     return { x, y };
   });
 }
-
-const pngSignature = [0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a];
 
 /** Puts a map together from its chunks, and never holds more than `maxMapBytes`. */
 export class Receiver {
@@ -71,10 +71,8 @@ export class Receiver {
     const wasOversized = this.#oversized;
     this.#reset();
     if (wasOversized) return undefined;
-    const png = new Blob(chunks, { type: 'image/png' });
-    const head = new Uint8Array(joinHead(chunks, pngSignature.length));
-    const isPng = pngSignature.every((byte, i) => head[i] === byte);
-    return isPng ? { kind: 'map', png } : { kind: 'refused', reason: 'a map that is no PNG' };
+    const map = recognise(chunks);
+    return map ? { kind: 'map', ...map } : { kind: 'refused', reason: `a map that is no ${formatNames}` };
   }
 
   #reset(): void {
@@ -82,14 +80,4 @@ export class Receiver {
     this.#bytes = 0;
     this.#oversized = false;
   }
-}
-
-/** The first bytes of the chunks together: a chunk may be shorter than a PNG's signature. */
-function joinHead(chunks: readonly ArrayBuffer[], length: number): number[] {
-  const head: number[] = [];
-  for (const chunk of chunks) {
-    head.push(...new Uint8Array(chunk, 0, Math.min(chunk.byteLength, length - head.length)));
-    if (head.length >= length) break;
-  }
-  return head;
 }

@@ -16,7 +16,8 @@ test('a map is its chunks in order, ended by the text', async () => {
   const received = receiver.take(mapComplete);
   assert.equal(received?.kind, 'map');
   assert.ok(received?.kind === 'map');
-  const joined = Buffer.from(await received.png.arrayBuffer()).toString('hex');
+  assert.equal(received.format, 'png');
+  const joined = Buffer.from(await received.bytes.arrayBuffer()).toString('hex');
   assert.equal(joined, '89504e470d0a1a0a0000000d494844520000010000000100');
 });
 

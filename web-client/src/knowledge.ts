@@ -1,0 +1,19 @@
+import type { Place } from './protocol';
+import type { State } from './session';
+import type { Role } from './signaling';
+
+/** What the page knows of the session; read by `window.lichtveld`. */
+export interface Knowledge {
+  state: State;
+  /** What went wrong last, in words. */
+  error: string;
+  role: Role | undefined;
+  places: readonly Place[];
+}
+
+export const nothingKnown = (): Knowledge => ({
+  state: 'connecting',
+  error: '',
+  role: undefined,
+  places: [],
+});

@@ -1,0 +1,114 @@
+import { Controls } from './controls';
+import { Frames } from './frames';
+import type { Knowledge } from './knowledge';
+import { MapDecoder } from './map_decoder';
+import { Receiver } from './protocol';
+import type { Room } from './room';
+import { fetchScene, type SceneFile } from './scene_file';
+import { Session, type SessionEvents, type State } from './session';
+import type { Role, SceneOffer } from './signaling';
+import type { MapStatistics } from './statistics';
+import type { View } from './view';
+
+/** Somebody in the room, player or watcher: brings what comes from the server into the room and onto the page. */
+export class Player {
+  readonly #scene: Promise<SceneFile>;
+  readonly #session: Session;
+  #receiver = new Receiver();
+  readonly #maps = new MapDecoder({
+    onPicture: (picture, map) => {
+      this.room.setMap(picture);
+      this.statistics.count(map.bytes.size, picture.width, picture.height, performance.now());
+    },
+    onBroken: () => this.#refuse('a map that cannot be decoded'),
+  });
+
+  constructor(
+    private readonly room: Room,
+    private readonly view: View,
+    private readonly statistics: MapStatistics,
+    private readonly known: Knowledge,
+  ) {
+    this.#scene = this.#fetchScene();
+    this.#session = new Session(this.#sessionEvents());
+    this.#listenToThePage();
+    this.#drawOnDemand();
+  }
+
+  #fetchScene(): Promise<SceneFile> {
+    const scene = fetchScene('/scene.glb', this.room.surfaces, (reason, pause) => {
+      this.known.error = reason;
+      this.view.missScene({ reason, retryAt: performance.now() + pause });
+    });
+    void scene.then((file) => {
+      this.view.missScene(undefined);
+      this.room.show(file);
+    });
+    return scene;
+  }
+
+  #sessionEvents(): SessionEvents {
+    return {
+      hasScene: async (offer: SceneOffer) => {
+        const file = await this.#scene;
+        return offer.sha256 === undefined || offer.sha256 === file.sha256;
+      },
+      onState: (state, detail) => this.#stand(state, detail),
+      onRole: (role) => this.#play(role),
+      onData: (data) => this.#take(data),
+    };
+  }
+
+  #stand(state: State, detail: { reason: string; retryAt?: number }): void {
+    if (state === 'live') {
+      this.#receiver = new Receiver();
+      this.statistics.restart();
+      this.room.settle();
+    }
+    this.known.state = state;
+    if (detail.reason) this.known.error = detail.reason;
+    this.view.stand(state, detail);
+  }
+
+  #play({ cube, players, watchers }: Role): void {
+    const changed = cube !== this.known.role?.cube;
+    this.known.role = { cube, players, watchers };
+    this.view.showRole(this.known.role, changed);
+    if (changed) this.room.mark(cube);
+  }
+
+  #take(data: string | ArrayBuffer): void {
+    const received = this.#receiver.take(data);
+    if (received?.kind === 'map') void this.#maps.take(received);
+    else if (received?.kind === 'refused') this.#refuse(received.reason);
+    else if (received?.kind === 'places') this.room.setPlaces((this.known.places = received.places));
+  }
+
+  #refuse(reason: string): void {
+    this.statistics.refused += 1;
+    this.known.error = reason;
+  }
+
+  #listenToThePage(): void {
+    addEventListener('resize', () => this.room.resize());
+    addEventListener('pagehide', () => this.#session.leave());
+    // Out of the back/forward cache the page goes on where it was, without having been loaded.
+    addEventListener('pageshow', ({ persisted }) => persisted && this.#session.comeBack());
+    setInterval(() => this.view.showFacts(this.statistics), 250);
+  }
+
+  #drawOnDemand(): void {
+    const controls = new Controls(
+      this.view.canvas,
+      this.room,
+      { onStep: (direction) => this.#session.send(direction), onUse: () => this.view.hintUsed() },
+      this.view.arrowButtons,
+    );
+    const frames = new Frames((ms) => {
+      controls.advance(ms);
+      if (this.room.draw(ms)) this.view.placeLabel(this.room.ownLabelPlace());
+    });
+    this.room.onInvalid = () => frames.ask();
+    this.room.invalidate();
+  }
+}
