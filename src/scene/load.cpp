@@ -108,7 +108,7 @@ Scene read_scene(const std::filesystem::path& file) {
   const auto one_sided = [&](const Piece& piece) {
     return !scene.materials[piece.surface.material].double_sided;
   };
-  const auto double_sided = std::ranges::stable_partition(pieces, one_sided).begin();
+  const auto double_sided = std::stable_partition(pieces.begin(), pieces.end(), one_sided);
   for (auto piece = pieces.begin(); piece != pieces.end(); ++piece) {
     if (piece == double_sided) scene.one_sided_indices = static_cast<std::uint32_t>(scene.indices.size());
     piece->surface.first_index = static_cast<std::uint32_t>(scene.indices.size());
