@@ -38,7 +38,7 @@ bool chart_reaches(ivec2 texel, vec3 p, vec3 away) {
 
 #include "wall.glsl"
 
-// Whether a surface leaves the receiver's plane between p and the place `away` from it: one that rises from it, or any.
+// Whether a surface leaves the receiver's plane between p and what is `away` from it: one that rises from it, or any.
 // `near`: the receiver's two nearest walls, and the distances of the first and of the third, as bits [m].
 bool wall_between(uvec4 near, uint triangle, vec3 p, vec3 away, vec3 face, Blur blur, bool rising_only) {
   const float reach = length(away) + most_blur(blur);

@@ -16,8 +16,8 @@ using uint = std::uint32_t;
 #define SHARED_FUNCTION
 #endif
 
-// Invocations of a compute workgroup, a side, over texels or pixels.
-const uint GROUP = 8;
+// Invocations of a compute workgroup a side, over texels or pixels.
+const uint SIDE = 8;
 
 // Depth of an A-buffer slot that holds nothing. PSF depths lie in [-1, 1].
 const float NO_LAYER = 4.0;
@@ -80,10 +80,10 @@ struct LayerConstants {
 
 // --method links. A pair is a direction and its antipode, which share one A-buffer.
 
-// Invocations of a workgroup over numbered texels.
-const uint TILE = 64;
+// A group: consecutive records, a workgroup's.
+const uint GROUP = 64;
 
-// Texels whose words of a pair lie together in the table of links: 64 bytes, of which TILE holds a whole number.
+// Texels whose words of a pair lie together in the table of links: 64 bytes, of which GROUP holds a whole number.
 const uint LINE = 16;
 
 // Parts of the directions, as many of either half, each of which spans the sphere: what a bounce may leave for the next.
@@ -94,17 +94,17 @@ SHARED_FUNCTION uint first_pair_of_part(uint pairs, uint part) { return pairs / 
 
 // A valid texel as a receiver, where its body is.
 struct Receiver {
-  vec4 place;              // xyz [m]; w: the atlas texel
+  vec4 at;                 // xyz [m]; w: the atlas texel
   vec4 face_and_triangle;  // as LightMap::face_normal
   vec4 normal_and_wall;    // xyz: unit; w: as near.z, for whoever asks for no more of it [m]
   uvec4 near;              // as LightMap::near_walls
 };
 
-// Part of a pair's raster, and where it lies in the store that many parts share. Its pixels lie together there, row by row.
+// A patch of a pair's raster, and where it lies in the store that many share. Its pixels lie together there, row by row.
 struct Region {
   PsfView view;
   ivec4 rect;   // first column and row, columns, rows, of the pair's raster [pixels]
-  ivec4 place;  // xy: first column and row as it is drawn [pixels]; z: the pair; w: first pixel in the store
+  ivec4 store;  // xy: first column and row as it is drawn [pixels]; z: the pair; w: first pixel in the store
 };
 
 // Tiles of texels that look into a region: a workgroup's work.

@@ -6,7 +6,7 @@
 #include "links.glsl"
 #include "direct_light.glsl"
 
-layout(local_size_x = TILE) in;
+layout(local_size_x = GROUP) in;
 layout(constant_id = 0) const uint BITS = 16;  // of a link
 layout(binding = 0) readonly buffer Table { uint table[]; };
 layout(binding = 1) uniform samplerBuffer directions;  // xyz; w: solid angle [sr], of each pair

@@ -17,7 +17,7 @@ layout(binding = 4) writeonly buffer Layers { uvec2 layers[]; };
 void add(uint pixel, uint texel, bool along, float depth) {
   const uint nth = layers_of(atomicAdd(filled[pixel], along ? SENDS_ALONG : SENDS_BACK), along);
   if (nth < constants.capacity)
-    layers[place_of(nth, along, constants.capacity) * constants.store_pixels + pixel] = layer_link(texel, depth);
+    layers[slot_of(nth, along, constants.capacity) * constants.store_pixels + pixel] = layer_link(texel, depth);
 }
 
 void main() {

@@ -24,7 +24,7 @@ void main() {
   const Region region = region_at(regions, gl_InstanceIndex);
   atlas_coordinate = atlas;
   psf_depth = dot(region.view.along, p);
-  stored = uvec2(region.place.w - region.place.y * region.rect.z - region.place.x, region.rect.z);
+  stored = uvec2(region.store.w - region.store.y * region.rect.z - region.store.x, region.rect.z);
   // To where the rasteriser would snap it anyway: so that a region looks the same wherever it lies in the store.
   const float steps = 0.5 * float(constants.size) / SUBPIXEL;
   const vec2 projected = vec2(dot(region.view.right, p), dot(region.view.up, p));

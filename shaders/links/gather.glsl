@@ -1,7 +1,7 @@
 // A part of one bounce's sum over pairs: w L of what each texel sees, lamps' own light apart, and w. Included by a shader
 // that defines two_links().
 
-layout(local_size_x = TILE) in;
+layout(local_size_x = GROUP) in;
 layout(binding = 1) uniform samplerBuffer radiance;                 // what each link sees. rgb: L; a: 1; of UNKNOWN all 0
 layout(binding = 2) uniform samplerBuffer directions;               // xyz; w: solid angle [sr], of each pair
 layout(binding = 3) readonly buffer TexelOf { uint texel_of[]; };
@@ -29,7 +29,7 @@ void gather(uint me, vec3 n, uint part) {
 
 void main() {
   const uint group = constants.listed != 0u ? groups[gl_WorkGroupID.x] : gl_WorkGroupID.x;
-  const uint me = group * TILE + gl_LocalInvocationID.x;
+  const uint me = group * GROUP + gl_LocalInvocationID.x;
   if (me >= constants.texels) return;
   const uint width = uint(imageSize(normal).x);
   const vec3 n = imageLoad(normal, ivec2(texel_of[me] % width, texel_of[me] / width)).xyz;

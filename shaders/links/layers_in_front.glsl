@@ -9,14 +9,14 @@ layout(binding = 1) readonly buffer Filled { uint filled[]; };
 // is none. Layers that are not asked for, where `wanted` is false.
 int nearest_in_front(ivec2 pixel, Region region, float sign, float limit, bool wanted) {
   const ivec2 within = pixel - region.rect.xy;
-  const uint index = uint(region.place.w + within.y * region.rect.z + within.x);
+  const uint index = uint(region.store.w + within.y * region.rect.z + within.x);
   const uint counts = wanted ? filled[index] : 0u;
   const bool along = sign > 0.0;
   const uint count = min(layers_of(counts, along), CAPACITY);
   int found = -1;
   float nearest = -NO_LAYER;
   for (uint k = 0u; k < count; ++k) {
-    const uvec2 layer = layers[place_of(k, along, CAPACITY) * constants.store_pixels + index];
+    const uvec2 layer = layers[slot_of(k, along, CAPACITY) * constants.store_pixels + index];
     const float depth = sign * uintBitsToFloat(layer.y);
     if (depth <= limit && depth > nearest) {
       nearest = depth;

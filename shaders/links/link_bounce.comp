@@ -6,7 +6,7 @@
 #include "direct_light.glsl"
 #include "finish.glsl"
 
-layout(local_size_x = TILE) in;
+layout(local_size_x = GROUP) in;
 layout(binding = 0) uniform samplerBuffer sums;                 // as gather.glsl's
 layout(binding = 1) readonly buffer Direct { uint direct[]; };  // of each texel and half: sum of w Le of lamps [scaled]
 layout(binding = 2) readonly buffer TexelOf { uint texel_of[]; };
@@ -18,16 +18,23 @@ layout(binding = 7) writeonly buffer Radiance { vec4 radiance[]; };      // as g
 layout(binding = 8) writeonly buffer Changed { vec2 changed[]; };        // of a texel: the largest, and the sum of E
 layout(push_constant) uniform Push { BounceConstants constants; };
 
-// From half of the directions. rgb: sum of w L, lamps with it; a: of w.
+// From half of the directions, lamps left out. rgb: sum of w L; a: of w.
 vec4 received(uint me, uint half_of) {
   const uint first = half_of * PARTS / 2u;
   vec4 sum = vec4(0.0);
   for (uint part = first; part < first + PARTS / 2u; ++part) sum += texelFetch(sums, int(part * constants.texels + me));
-  vec3 from_lamps;
-  for (uint channel = 0u; channel < 3u; ++channel)
-    from_lamps[channel] = float(direct[direct_at(me, half_of, channel)]) / constants.direct_scale;
-  return vec4(sum.rgb + from_lamps, sum.a);
+  return sum;
 }
+
+// The same of lamps alone.
+vec4 from_lamps(uint me, uint half_of, float weight) {
+  vec3 sum;
+  for (uint channel = 0u; channel < 3u; ++channel)
+    sum[channel] = float(direct[direct_at(me, half_of, channel)]) / constants.direct_scale;
+  return vec4(sum, weight);
+}
+
+vec3 irradiance_with_lamps(vec4 sum, vec4 lamps) { return irradiance_of(sum, irradiance_of(lamps, vec3(0.0))); }
 
 void main() {
   const uint me = gl_GlobalInvocationID.x;
@@ -36,9 +43,11 @@ void main() {
   const ivec2 texel = ivec2(texel_of[me] % width, texel_of[me] / width);
   const vec3 before = imageLoad(total_irradiance, texel).rgb;
   const vec4 first = received(me, 0u), second = received(me, 1u);
-  const vec3 e = irradiance_of(first + second), change = abs(e - before);
+  const vec4 first_lamps = from_lamps(me, 0u, first.a), second_lamps = from_lamps(me, 1u, second.a);
+  const vec3 e = irradiance_with_lamps(first + second, first_lamps + second_lamps), change = abs(e - before);
   imageStore(total_irradiance, texel, vec4(e, 1.0));
-  imageStore(half_difference, texel, vec4((irradiance_of(first) - irradiance_of(second)) / 2.0, 0.0));
+  const vec3 apart = irradiance_with_lamps(first, first_lamps) - irradiance_with_lamps(second, second_lamps);
+  imageStore(half_difference, texel, vec4(apart / 2.0, 0.0));
   const vec3 own = me < constants.lamps ? vec3(0.0) : imageLoad(emission, texel).rgb;
   radiance[me] = vec4(radiance_of(own, imageLoad(albedo, texel).rgb, e), 1.0);
   if (constants.counted != 0u) changed[me] = vec2(max(change.r, max(change.g, change.b)), e.r + e.g + e.b);

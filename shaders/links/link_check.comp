@@ -4,7 +4,7 @@
 #include "shared.h"
 #include "links.glsl"
 
-layout(local_size_x = TILE) in;
+layout(local_size_x = GROUP) in;
 layout(constant_id = 0) const uint BITS = 16;  // of a link
 layout(binding = 0) readonly buffer Table { uint table[]; };
 layout(binding = 1) readonly buffer Again { uint again[]; };
@@ -29,7 +29,7 @@ uint differing(uint a, uint b) {
 void main() {
   const uint words = 2u * BITS / 32u;
   uint count = 0u;
-  for (uint me = gl_GlobalInvocationID.x; me < constants.texels; me += gl_NumWorkGroups.x * TILE)
+  for (uint me = gl_GlobalInvocationID.x; me < constants.texels; me += gl_NumWorkGroups.x * GROUP)
     for (uint word = 0u; word < words; ++word)
       count += differing(table[word_at(constants.first_word + word, me, constants.words)], again[word_at(word, me, words)]);
   if (count > 0u) atomicAdd(counters.differing, count);

@@ -5,7 +5,7 @@
 #include "links.glsl"
 #include "rows.glsl"
 
-layout(local_size_x = TILE) in;
+layout(local_size_x = GROUP) in;
 layout(constant_id = 0) const uint BITS = 16;  // of a link
 layout(binding = 0) readonly buffer Table { uint table[]; };
 layout(binding = 1) uniform samplerBuffer directions;         // xyz; w: solid angle [sr], of each pair
@@ -25,10 +25,10 @@ uint link_of(uint pair, uint me) {
 }
 
 void main() {
-  const uint me = groups[gl_WorkGroupID.x] * TILE + gl_LocalInvocationID.x;
+  const uint me = groups[gl_WorkGroupID.x] * GROUP + gl_LocalInvocationID.x;
   if (me >= constants.texels) return;
   const Receiver receiver = receiver_at(receivers, me);
-  const vec3 face = receiver.face_and_triangle.xyz, place = receiver.place.xyz;
+  const vec3 face = receiver.face_and_triangle.xyz, at = receiver.at.xyz;
   float balance = 0.0;
   for (uint vote = 0u; vote < constants.votes; ++vote) {
     const uint pair = vote * constants.pairs / constants.votes;
@@ -37,9 +37,9 @@ void main() {
     if (cosine < STEEP || link >= constants.texels) continue;
     const Receiver seen = receiver_at(receivers, link);
     const bool touches = dot(face, seen.face_and_triangle.xyz) < -FACING &&
-                         abs(dot(face, seen.place.xyz - place)) <= constants.contact;
+                         abs(dot(face, seen.at.xyz - at)) <= constants.contact;
     balance += touches ? cosine : -cosine;
   }
-  const uint width = uint(imageSize(cover).x), texel = uint(receiver.place.w);
+  const uint width = uint(imageSize(cover).x), texel = uint(receiver.at.w);
   imageStore(cover, ivec2(texel % width, texel / width), vec4(balance));
 }

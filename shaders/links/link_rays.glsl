@@ -27,10 +27,10 @@ struct Sight {
   vec2 slope;      // of its plane's depth along right and up
 };
 
-Sight look(vec3 place, vec3 face, Region region) {
+Sight look(vec3 at, vec3 face, Region region) {
   const PsfView view = region.view;
   const float size = float(constants.size);
-  const vec4 p = vec4(place, 1.0);
+  const vec4 p = vec4(at, 1.0);
   Sight sight;
   sight.projected = vec2(dot(view.right, p), dot(view.up, p));
   const vec2 in_pixels = (sight.projected * 0.5 + 0.5) * size;

@@ -3,7 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "shared.h"
 
-layout(local_size_x = TILE) in;
+layout(local_size_x = GROUP) in;
 layout(binding = 0) readonly buffer TexelOf { uint texel_of[]; };  // atlas texel of each valid one
 layout(binding = 1, rgba32f) uniform readonly image2D position;
 layout(binding = 2, rgba32f) uniform readonly image2D normal;

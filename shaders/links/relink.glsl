@@ -11,7 +11,7 @@ uint share_of(uint link, uint channel, vec3 normal, vec4 direction) {
 }
 
 void relink(uint me, vec3 normal, Region region, uint link) {
-  const uint pair = uint(region.place.z), nth = pair - constants.first_pair;
+  const uint pair = uint(region.store.z), nth = pair - constants.first_pair;
   const uint was = link_at(nth, me, constants.pairs);
   put_link(nth, me, link, constants.pairs);
   const bool changes = min(link, was) < constants.lamps && max(link, was) >= constants.lamps_alike;

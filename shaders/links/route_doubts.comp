@@ -17,15 +17,15 @@ void main() {
     const uvec2 doubt = doubts[index], ray = uvec2(doubt.x, doubt.y & ~NOTHING_SEEN);
     const Region region = region_at(regions, ray.y);
     const Receiver receiver = receiver_at(receivers, ray.x);
-    const vec3 place = receiver.place.xyz, face = receiver.face_and_triangle.xyz;
-    const Sight sight = look(place, face, region);
+    const vec3 at = receiver.at.xyz, face = receiver.face_and_triangle.xyz;
+    const Sight sight = look(at, face, region);
     const Blur blur = blur_of(2.0 / float(constants.size), sight.scale, sight.travel, sight.face_cosine);
     const vec3 away = away_to(shift_to(sight.nearest, sight), sight, region);
     const float reach = length(away) + most_blur(blur);
     // As in wall_between: without a wall in reach, those that are named may be anywhere.
     const bool between = reach >= uintBitsToFloat(receiver.near.z) &&
-                         (is_between(receiver.near.x, place, away, face, blur, false) ||
-                          is_between(receiver.near.y, place, away, face, blur, false));
+                         (is_between(receiver.near.x, at, away, face, blur, false) ||
+                          is_between(receiver.near.y, at, away, face, blur, false));
     // With three walls in reach the two nearest do not decide.
     if (doubt != ray || between || reach >= uintBitsToFloat(receiver.near.w))
       rest[atomicAdd(counters.rest, 1u)] = uvec2(ray.x, between ? ray.y | WALL_BETWEEN : ray.y);

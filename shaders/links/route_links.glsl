@@ -16,7 +16,7 @@ void route(uint me, uint index, Region region) {
   me = min(me, constants.texels - 1u);
   const Receiver receiver = receiver_at(receivers, me);
   const vec3 face = receiver.face_and_triangle.xyz;
-  const Sight sight = look(receiver.place.xyz, face, region);
+  const Sight sight = look(receiver.at.xyz, face, region);
   const float pixel_width = 2.0 / float(constants.size);
   const bool wanted = valid && sight.inside;
   const bool lit = sight.face_cosine > 0.0 && dot(receiver.normal_and_wall.xyz, sight.travel) < 0.0;

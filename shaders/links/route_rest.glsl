@@ -22,7 +22,7 @@ ivec2 pixel_of(uint choice, Sight sight) {
 uint next_open(uint choice, Receiver receiver, Sight sight, Region region, Blur blur) {
   const vec3 face = receiver.face_and_triangle.xyz;
   while (choice < CHOICES &&
-         wall_between(receiver.near, uint(receiver.face_and_triangle.a), receiver.place.xyz,
+         wall_between(receiver.near, uint(receiver.face_and_triangle.a), receiver.at.xyz,
                       away_to(shift_to(pixel_of(choice, sight), sight), sight, region), face, blur, choice >= 4u))
     ++choice;
   return choice;
@@ -31,8 +31,8 @@ uint next_open(uint choice, Receiver receiver, Sight sight, Region region, Blur 
 void route(uint me, Region region, bool wall_at_nearest) {
   const Receiver receiver = receiver_at(receivers, me);
   const vec3 face = receiver.face_and_triangle.xyz;
-  const vec4 place = receiver.place;
-  const Sight sight = look(place.xyz, face, region);
+  const vec4 at = receiver.at;
+  const Sight sight = look(at.xyz, face, region);
   const float pixel_width = 2.0 / float(constants.size);
   const float tolerance = receiver_tolerance(sight.slope, pixel_width);
   const Blur blur = blur_of(pixel_width, sight.scale, sight.travel, sight.face_cosine);
@@ -49,8 +49,8 @@ void route(uint me, Region region, bool wall_at_nearest) {
     const float limit = receiver_depth(shift, sight.depth, sight.slope) + tolerance;
     link = nearest_in_front(pixel, region, sight.sign, limit, true);
     if (link >= 0) break;
-    const uint texel = uint(place.w), width = uint(imageSize(position).x);
-    if (chart_reaches(ivec2(texel % width, texel / width), place.xyz, away_to(shift, sight, region))) break;
+    const uint texel = uint(at.w), width = uint(imageSize(position).x);
+    if (chart_reaches(ivec2(texel % width, texel / width), at.xyz, away_to(shift, sight, region))) break;
   }
   relink(me, receiver.normal_and_wall.xyz, region,
          link >= 0 ? uint(link) : known ? MISS(constants.texels) : UNKNOWN(constants.texels));
@@ -64,7 +64,7 @@ void main() {
   for (uint index = gl_GlobalInvocationID.x; index < count; index += all) {
     const uvec2 ray = rest[index];
     const Region region = region_at(regions, ray.y & ~WALL_BETWEEN);
-    const uint pair = uint(region.place.z);
+    const uint pair = uint(region.store.z);
     if (pair >= constants.first_pair && pair < constants.first_pair + constants.pairs)
       route(ray.x, region, (ray.y & WALL_BETWEEN) != 0u);
   }

@@ -4,7 +4,7 @@
 #include "shared.h"
 #include "finish.glsl"
 
-layout(local_size_x = GROUP, local_size_y = GROUP) in;
+layout(local_size_x = SIDE, local_size_y = SIDE) in;
 layout(binding = 0, r32ui) uniform readonly uimage2D source;
 layout(binding = 1, rgba32f) uniform readonly image2D albedo;
 layout(binding = 2, rgba32f) uniform readonly image2D emission;

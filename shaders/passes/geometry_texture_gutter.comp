@@ -4,7 +4,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "shared.h"
 
-layout(local_size_x = GROUP, local_size_y = GROUP) in;
+layout(local_size_x = SIDE, local_size_y = SIDE) in;
 layout(binding = 0, rgba32f) uniform readonly image2D position;
 layout(binding = 1, rgba32f) uniform readonly image2D face_normal;
 layout(binding = 2, r32f) uniform readonly image2D cover;  // above 0: most rays start in contact with a surface
@@ -15,7 +15,7 @@ layout(binding = 4, r32ui) uniform writeonly uimage2D shown;   // y * size + x, 
 // so that curved surfaces count as one.
 const float SAME_FACE = 0.985;
 
-const int SIDE = 2 * GUTTER + 1;  // of the square that is looked at [texels]
+const int SQUARE = 2 * GUTTER + 1;  // of the square that is looked at [texels]
 
 bool on_chart(ivec2 texel) { return imageLoad(position, texel).a > 0.0; }
 bool open(ivec2 texel) { return on_chart(texel) && imageLoad(cover, texel).r <= 0.0; }
@@ -36,8 +36,8 @@ void main() {
   // out where all are.
   const vec3 face = imageLoad(face_normal, texel).xyz;
   int best = 1000;
-  for (int beside = done ? SIDE * SIDE : 0; beside < SIDE * SIDE; ++beside) {
-    const ivec2 step = ivec2(beside % SIDE, beside / SIDE) - GUTTER, near = texel + step;
+  for (int beside = done ? SQUARE * SQUARE : 0; beside < SQUARE * SQUARE; ++beside) {
+    const ivec2 step = ivec2(beside % SQUARE, beside / SQUARE) - GUTTER, near = texel + step;
     const int distance_squared = step.x * step.x + step.y * step.y;
     if (distance_squared >= best || any(lessThan(near, ivec2(0))) || any(greaterThanEqual(near, ivec2(size)))) continue;
     if (open(near) && (!chart || dot(imageLoad(face_normal, near).xyz, face) > SAME_FACE)) {

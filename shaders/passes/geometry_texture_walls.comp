@@ -3,7 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "shared.h"
 
-layout(local_size_x = GROUP, local_size_y = GROUP) in;
+layout(local_size_x = SIDE, local_size_y = SIDE) in;
 layout(binding = 0, rgba32f) uniform readonly image2D position;
 layout(binding = 1, rgba32f) uniform readonly image2D face_normal;
 layout(binding = 2) readonly buffer WallsFirst { uint walls_first[]; };  // of each triangle in walls; one more at the end

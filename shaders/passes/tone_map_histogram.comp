@@ -4,7 +4,7 @@
 #include "shared.h"
 #include "luminance.glsl"
 
-layout(local_size_x = GROUP, local_size_y = GROUP) in;
+layout(local_size_x = SIDE, local_size_y = SIDE) in;
 layout(binding = 0, rgba32f) uniform readonly image2D radiance;
 layout(binding = 1, rgba32f) uniform readonly image2D position;
 layout(binding = 2) buffer Histogram { uint bins[HISTOGRAM_BINS]; };

@@ -6,7 +6,7 @@
 layout(constant_id = 0) const uint LAYERS = 8;
 #include "abuffer_stencil.glsl"
 
-layout(local_size_x = GROUP, local_size_y = GROUP) in;
+layout(local_size_x = SIDE, local_size_y = SIDE) in;
 layout(binding = 2, rgba32f) uniform writeonly image2D shown_layer;
 layout(push_constant) uniform Push { LayerConstants constants; };
 

@@ -5,7 +5,7 @@
 #include "shared.h"
 #include "finish.glsl"
 
-layout(local_size_x = GROUP, local_size_y = GROUP) in;
+layout(local_size_x = SIDE, local_size_y = SIDE) in;
 layout(binding = 0, rgba32f) uniform image2D bounce_irradiance_0;  // of each half of the directions
 layout(binding = 1, rgba32f) uniform image2D bounce_irradiance_1;
 layout(binding = 2, rgba32f) uniform readonly image2D position;
@@ -16,8 +16,8 @@ void main() {
   const ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
   if (any(greaterThanEqual(texel, imageSize(total_irradiance)))) return;
   const vec4 first = imageLoad(bounce_irradiance_0, texel), second = imageLoad(bounce_irradiance_1, texel);
-  imageStore(total_irradiance, texel, vec4(irradiance_of(first + second), imageLoad(position, texel).a));
-  imageStore(half_difference, texel, vec4((irradiance_of(first) - irradiance_of(second)) / 2.0, 0.0));
+  imageStore(total_irradiance, texel, vec4(irradiance_of(first + second, vec3(0.0)), imageLoad(position, texel).a));
+  imageStore(half_difference, texel, vec4((irradiance_of(first, vec3(0.0)) - irradiance_of(second, vec3(0.0))) / 2.0, 0.0));
   imageStore(bounce_irradiance_0, texel, vec4(0.0));
   imageStore(bounce_irradiance_1, texel, vec4(0.0));
 }

@@ -3,7 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "shared.h"
 
-layout(local_size_x = GROUP, local_size_y = GROUP) in;
+layout(local_size_x = SIDE, local_size_y = SIDE) in;
 layout(binding = 0, rgba32f) uniform readonly image2D psf_irradiance;
 layout(binding = 1, rgba32f) uniform image2D bounce_irradiance;  // of its half; rgb: sum of w_k L_k; a: sum of w_k
 

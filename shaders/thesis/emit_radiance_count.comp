@@ -4,7 +4,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "shared.h"
 
-layout(local_size_x = GROUP, local_size_y = GROUP) in;
+layout(local_size_x = SIDE, local_size_y = SIDE) in;
 layout(constant_id = 0) const uint SAMPLES = 4;
 layout(binding = 0) uniform usampler2DMS stencil;  // of routed pass 0
 layout(binding = 1) buffer Counted { Counters counters; };

@@ -1,4 +1,4 @@
-// One layer of the per-pixel list: an atomic counter hands out the places.
+// One layer of the per-pixel list: an atomic counter hands out the slots.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shared.h"
@@ -15,9 +15,9 @@ layout(binding = 4) buffer Counted { Counters counters; };
 void main() {
   const vec4 layer = emitted(radiance, atlas_coordinate, psf_depth, gl_FrontFacing);
   const uint pixel = uint(gl_FragCoord.y) * constants.size + uint(gl_FragCoord.x);
-  const uint place = atomicAdd(filled[pixel], 1u);
-  if (place < constants.capacity) layers[pixel * constants.capacity + place] = layer;
+  const uint slot = atomicAdd(filled[pixel], 1u);
+  if (slot < constants.capacity) layers[pixel * constants.capacity + slot] = layer;
   if (constants.count == 0u) return;
-  if (place == constants.limit) atomicAdd(counters.overflow_pixels, 1u);
-  if (place >= counters.layers_max) atomicMax(counters.layers_max, place + 1u);  // a stale read only costs an atomic
+  if (slot == constants.limit) atomicAdd(counters.overflow_pixels, 1u);
+  if (slot >= counters.layers_max) atomicMax(counters.layers_max, slot + 1u);  // a stale read only costs an atomic
 }

@@ -9,9 +9,9 @@ void compare_and_swap(uint a, uint b) {
   const float depth = depths[a];
   depths[a] = depths[b];
   depths[b] = depth;
-  const uint place = order[a];
+  const uint layer = order[a];
   order[a] = order[b];
-  order[b] = place;
+  order[b] = layer;
 }
 
 // Batcher 1968: a network for any power of two.

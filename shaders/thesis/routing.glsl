@@ -1,7 +1,7 @@
 // Stencil routing, per texel: order the layers of the pixel that the texel projects to and take the last one in front.
 // Included by a shader that defines abuffer_layer() and abuffer_filled() for its kind of A-buffer.
 
-layout(local_size_x = GROUP, local_size_y = GROUP) in;
+layout(local_size_x = SIDE, local_size_y = SIDE) in;
 layout(binding = 2, rgba32f) uniform readonly image2D position;
 layout(binding = 3, rgba32f) uniform readonly image2D normal;
 layout(binding = 4, rgba32f) uniform readonly image2D face_normal;

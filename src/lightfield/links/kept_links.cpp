@@ -35,7 +35,7 @@ scene::Box grown(const scene::Box& box, float share) {
 
 // A batch's regions stand in the order of their pairs.
 std::string directions_of(const RegionBatch& batch) {
-  return fmt::format("pairs of directions {}..{}", batch.regions.front().place.z, batch.regions.back().place.z);
+  return fmt::format("pairs of directions {}..{}", batch.regions.front().store.z, batch.regions.back().store.z);
 }
 
 // What shaders fetch at once of each pair.
@@ -83,7 +83,7 @@ void KeptLinks::link(const scene::Offsets& to, const Moves& moves, Solution& sol
     solution.rays = std::uint64_t{table_.texels} * table_.pairs;
     solution.misses = solution.rays_unknown = solution.overflow_pixels = 0;
     solution.texels_valid = table_.texels;
-    route(whole_rasters(), tiles, solution);
+    route(whole_patches(), tiles, solution);
   } else {
     auto boxes = moved_boxes(moves);
     cover_unknown_.merge(groups_beside(boxes, contact(geometry_.sphere, settings_.raster()), tiles));
@@ -91,7 +91,7 @@ void KeptLinks::link(const scene::Offsets& to, const Moves& moves, Solution& sol
     const auto beside = groups_beside(boxes, 0, tiles);
     beside_ = {beside.begin(), beside.end()};
     // One after the other: where their ways cross, the same links change for each.
-    for (const auto& move : moves.bodies) route(changed_parts(move), tiles, solution);
+    for (const auto& move : moves.bodies) route(changed_patches(move), tiles, solution);
   }
   placing.wait();
 }
@@ -108,25 +108,26 @@ KeptLinks::Layered& KeptLinks::layered() {
   return *layered_;
 }
 
-Part KeptLinks::whole_raster(std::uint32_t pair) const {
+Patch KeptLinks::whole_patch(std::uint32_t pair) const {
   const auto pixels = settings_.raster();
-  return whole(psf_view(set_.pairs()[pair], geometry_.sphere, pixels), pair, pixels);
+  return lightfield::whole_patch(psf_view(set_.pairs()[pair], geometry_.sphere, pixels), pair, pixels);
 }
 
-std::vector<Part> KeptLinks::whole_rasters() const {
-  std::vector<Part> parts;
-  for (std::uint32_t pair = 0; pair < table_.pairs; ++pair) parts.push_back(whole_raster(pair));
-  return parts;
+std::vector<Patch> KeptLinks::whole_patches() const {
+  std::vector<Patch> patches;
+  for (std::uint32_t pair = 0; pair < table_.pairs; ++pair) patches.push_back(whole_patch(pair));
+  return patches;
 }
 
 // Of every pair's raster.
-std::vector<Part> KeptLinks::changed_parts(const Moves::Move& move) const {
+std::vector<Patch> KeptLinks::changed_patches(const Moves::Move& move) const {
   const auto pixels = settings_.raster();
-  std::vector<Part> parts;
+  std::vector<Patch> patches;
   for (std::uint32_t pair = 0; pair < table_.pairs; ++pair)
-    parts.push_back(changed(psf_view(set_.pairs()[pair], geometry_.sphere, pixels), pair, pixels,
-                            moved(geometry_.scene.bodies[move.body].box, move.from), move.to - move.from));
-  return parts;
+    patches.push_back(changed_patch(psf_view(set_.pairs()[pair], geometry_.sphere, pixels), pair, pixels,
+                                    moved(geometry_.scene.bodies[move.body].box, move.from),
+                                    move.to - move.from));
+  return patches;
 }
 
 // Where something lay on texels or may lie on them now: where the bodies that move were, and where they are.
@@ -138,10 +139,10 @@ std::vector<scene::Box> KeptLinks::moved_boxes(const Moves& moves) const {
   return boxes;
 }
 
-void KeptLinks::route(const std::vector<Part>& parts, const TileBoxes& tiles, Solution& solution) {
+void KeptLinks::route(const std::vector<Patch>& patches, const TileBoxes& tiles, Solution& solution) {
   const auto pixels = settings_.raster();
   const auto before = solution;
-  auto batches = pack(parts, layered().store.extent, tiles);
+  auto batches = pack(patches, layered().store.extent, tiles);
   for (std::size_t batch = 0; batch < batches.size();) {
     auto& counted = counters_.as<shaders::Counters>().front();
     counted = {};
@@ -163,7 +164,7 @@ void KeptLinks::route(const std::vector<Part>& parts, const TileBoxes& tiles, So
                    solution.overflow_pixels, settings_.layers, counted.layers_max);
       capacity_ = std::bit_ceil(counted.layers_max);
       layered_.reset();  // first, so that both need not fit
-      batches = pack(parts, layered().store.extent, tiles);
+      batches = pack(patches, layered().store.extent, tiles);
       batch = 0;
       solution.overflow_pixels = before.overflow_pixels;
       solution.misses = before.misses;
@@ -195,11 +196,11 @@ LinkCheck KeptLinks::check_two() {
   again_->first_pair = first;
   const auto chunk = std::find_if(table_.chunks.begin(), table_.chunks.end(),
                                   [&](const auto& c) { return first < c.first_pair + c.pairs; });
-  std::vector<Part> parts;
-  for (const auto pair : {first, first + 1}) parts.push_back(whole_raster(pair));
+  std::vector<Patch> patches;
+  for (const auto pair : {first, first + 1}) patches.push_back(whole_patch(pair));
   auto& counted = counters_.as<shaders::Counters>().front();
   counted = {};
-  for (const auto& batch : pack(parts, layered().store.extent, table_.boxes(done_.linked_at))) {
+  for (const auto& batch : pack(patches, layered().store.extent, table_.boxes(done_.linked_at))) {
     gpu::Frame frame(device_, {"links", "check"});
     counted.doubts = counted.rest = 0;
     layered().route.record(frame, batch, geometry_, map_, table_, {{&*again_, 1}, direct_, false},

@@ -30,7 +30,7 @@ class KeptLinks {
   // Writes map().shown: what lies open to the light where the bodies are.
   void find_shown(gpu::Frame& frame);
 
-  // Groups of texels (of shaders::TILE) beside what the last link() found moved.
+  // Groups of texels (of shaders::GROUP) beside what the last link() found moved.
   const std::vector<std::uint32_t>& beside() const { return beside_; }
   const TexelRecords& records() const { return records_; }
   const LightMap& map() const { return map_; }
@@ -49,11 +49,11 @@ class KeptLinks {
   };
 
   void place(gpu::Frame& frame, const scene::Offsets& to, const Moves& moves);
-  Part whole_raster(std::uint32_t pair) const;
-  std::vector<Part> whole_rasters() const;
-  std::vector<Part> changed_parts(const Moves::Move& move) const;
+  Patch whole_patch(std::uint32_t pair) const;
+  std::vector<Patch> whole_patches() const;
+  std::vector<Patch> changed_patches(const Moves::Move& move) const;
   std::vector<scene::Box> moved_boxes(const Moves& moves) const;
-  void route(const std::vector<Part>& parts, const TileBoxes& tiles, Solution& solution);
+  void route(const std::vector<Patch>& patches, const TileBoxes& tiles, Solution& solution);
   Layered& layered();
   LinkCheck check_two();
 

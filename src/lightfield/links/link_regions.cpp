@@ -82,13 +82,13 @@ std::vector<std::uint32_t> tiles_in(const std::vector<Slab>& slabs, const TileBo
 
 }  // namespace
 
-Part whole(const shaders::PsfView& view, std::uint32_t pair, std::uint32_t pixels) {
+Patch whole_patch(const shaders::PsfView& view, std::uint32_t pair, std::uint32_t pixels) {
   const auto side = static_cast<int>(pixels);
-  return {{.view = view, .rect = {0, 0, side, side}, .place = {0, 0, static_cast<int>(pair), 0}}, {}};
+  return {{.view = view, .rect = {0, 0, side, side}, .store = {0, 0, static_cast<int>(pair), 0}}, {}};
 }
 
-Part changed(const shaders::PsfView& view, std::uint32_t pair, std::uint32_t pixels, const scene::Box& before,
-             const glm::vec3& way) {
+Patch changed_patch(const shaders::PsfView& view, std::uint32_t pair, std::uint32_t pixels,
+                    const scene::Box& before, const glm::vec3& way) {
   const auto side = static_cast<float>(pixels);
   const auto corners = swept_corners(before, way);
   glm::vec2 low(side), high(0);
@@ -103,18 +103,18 @@ Part changed(const shaders::PsfView& view, std::uint32_t pair, std::uint32_t pix
   };
   const glm::ivec2 first = inside(low - reach - 1.5f), end = glm::max(first, inside(high + reach + 0.5f) + 1);
   const auto last = glm::min(end, glm::ivec2(pixels));
-  return {{.view = view, .rect = {first, last - first}, .place = {0, 0, static_cast<int>(pair), 0}},
+  return {{.view = view, .rect = {first, last - first}, .store = {0, 0, static_cast<int>(pair), 0}},
           slabs_around(view, side, before, way, corners)};
 }
 
-std::vector<RegionBatch> pack(const std::vector<Part>& parts, const StoreExtent& store,
+std::vector<RegionBatch> pack(const std::vector<Patch>& patches, const StoreExtent& store,
                               const TileBoxes& tiles) {
   std::vector<RegionBatch> batches;
   const auto width = static_cast<int>(store.width), height = static_cast<int>(store.height);
   glm::ivec2 corner(0);  // of the next region: regions stand in rows, as long as they fit
   int row_height = 0;
-  for (const auto& [part, slabs] : parts) {
-    auto region = part;
+  for (const auto& [patch, slabs] : patches) {
+    auto region = patch;
     const glm::ivec2 extent(region.rect.z, region.rect.w);
     if (extent.x == 0 || extent.y == 0) continue;
     if (corner.x + extent.x > width) {
@@ -131,9 +131,9 @@ std::vector<RegionBatch> pack(const std::vector<Part>& parts, const StoreExtent&
       row_height = 0;
     }
     auto& batch = batches.back();
-    region.place.x = corner.x;
-    region.place.y = corner.y;
-    region.place.w = static_cast<int>(batch.pixels);
+    region.store.x = corner.x;
+    region.store.y = corner.y;
+    region.store.w = static_cast<int>(batch.pixels);
     batch.pixels += static_cast<std::uint32_t>(extent.x * extent.y);
     corner.x += extent.x;
     row_height = std::max(row_height, extent.y);

@@ -1,5 +1,5 @@
-// Which parts of which pairs' rasters are to be seen again, packed into a store that they share, and the tiles
-// of texels that look into them.
+// Which patches of which pairs' rasters are to be seen again, packed into a store that they share, and the
+// tiles of texels that look into them.
 #pragma once
 
 #include <set>
@@ -21,20 +21,20 @@ struct Slab {
   float low = 0, high = 0;
 };
 
-// A part of a pair's raster and, as all of these slabs, where a texel is that looks at what may have changed
+// A patch of a pair's raster and, as all of these slabs, where a texel is that looks at what may have changed
 // there. None: everywhere.
-struct Part {
+struct Patch {
   shaders::Region region;
   std::vector<Slab> slabs;
 };
 
 // The whole raster of a pair's view.
-Part whole(const shaders::PsfView& view, std::uint32_t pair, std::uint32_t pixels);
+Patch whole_patch(const shaders::PsfView& view, std::uint32_t pair, std::uint32_t pixels);
 
 // What a box changes by moving from one place to another: the projection of all places between, and what a
 // texel beside it looks at. Empty (no columns) where that lies outside the raster.
-Part changed(const shaders::PsfView& view, std::uint32_t pair, std::uint32_t pixels, const scene::Box& before,
-             const glm::vec3& way);
+Patch changed_patch(const shaders::PsfView& view, std::uint32_t pair, std::uint32_t pixels,
+                    const scene::Box& before, const glm::vec3& way);
 
 // As much as is emitted and routed at once.
 struct RegionBatch {
@@ -45,7 +45,8 @@ struct RegionBatch {
 };
 
 // Regions of at most the store's extent each; those of a batch keep the order of their pairs.
-std::vector<RegionBatch> pack(const std::vector<Part>& parts, const StoreExtent& store, const TileBoxes& tiles);
+std::vector<RegionBatch> pack(const std::vector<Patch>& patches, const StoreExtent& store,
+                              const TileBoxes& tiles);
 
 // The groups of tiles that meet any of these boxes, or come within `gap` of it [m].
 std::set<std::uint32_t> groups_beside(const std::vector<scene::Box>& boxes, float gap, const TileBoxes& tiles);

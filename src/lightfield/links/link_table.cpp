@@ -56,7 +56,7 @@ LinkTable::LinkTable(const gpu::Device& device, const TexelRecords& records, std
       pairs(pairs),
       texel_of(texels_of(device, records)),
       number(numbers_of(device, records)) {
-  tile = std::clamp(std::bit_floor(device.summary().subgroup_size), 8u, shaders::TILE);
+  tile = std::clamp(std::bit_floor(device.summary().subgroup_size), 8u, shaders::GROUP);
   // Two values are not texels: a miss, and a link that no pixel tells.
   bits = texels + 1 <= std::numeric_limits<std::uint16_t>::max() && device.summary().storage_16_bit ? 16 : 32;
 
@@ -101,7 +101,7 @@ TileBoxes LinkTable::boxes(const scene::Offsets& offsets) const {
       bounds.add(records[index].position + offsets[records[index].body], snapped * records[index].side);
     found.tiles.push_back(bounds.tile());
   }
-  const auto count = static_cast<std::uint32_t>(found.tiles.size()), each = shaders::TILE / tile;
+  const auto count = static_cast<std::uint32_t>(found.tiles.size()), each = shaders::GROUP / tile;
   for (std::uint32_t first = 0; first < count; first += each) {
     const auto end = std::min(first + each, count);
     Bounds bounds;

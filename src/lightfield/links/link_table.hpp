@@ -47,7 +47,9 @@ struct LinkTable {
   gpu::Buffer texel_of;  // uint: the atlas texel of each number
   gpu::Image number;     // uint: the number of each atlas texel's source; `texels` outside charts and gutters
 
-  std::uint32_t groups() const { return (texels + shaders::TILE - 1) / shaders::TILE; }  // workgroups over all
+  std::uint32_t groups() const {
+    return (texels + shaders::GROUP - 1) / shaders::GROUP;
+  }                         // workgroups over all
   std::uint32_t tile = 64;  // texels that are routed together: a vector of the device's
   TileBoxes boxes(const scene::Offsets& offsets) const;
 

@@ -47,9 +47,9 @@ StoreExtent store_extent(const gpu::Device& device, std::uint32_t pixels, std::u
 // The whole raster at its place, of which the region is visible: nothing is cut off where a region ends, which
 // would round edges anew, so that a region is exactly that part of the raster.
 gpu::Window window_of(const shaders::Region& region, std::uint32_t pixels) {
-  return {.offset = {region.place.x - region.rect.x, region.place.y - region.rect.y},
+  return {.offset = {region.store.x - region.rect.x, region.store.y - region.rect.y},
           .extent = {pixels, pixels},
-          .visible = {{region.place.x, region.place.y},
+          .visible = {{region.store.x, region.store.y},
                       {static_cast<std::uint32_t>(region.rect.z), static_cast<std::uint32_t>(region.rect.w)}}};
 }
 
@@ -200,7 +200,7 @@ void RouteLinks::record(gpu::Frame& frame, const RegionBatch& batch, const Geome
   auto first = batch.jobs.begin();
   for (const auto& chunk : to.chunks) {
     const auto end = std::find_if(first, batch.jobs.end(), [&](const shaders::RouteJob& job) {
-      return static_cast<std::uint32_t>(batch.regions[job.region].place.z) >= chunk.first_pair + chunk.pairs;
+      return static_cast<std::uint32_t>(batch.regions[job.region].store.z) >= chunk.first_pair + chunk.pairs;
     });
     if (first == end) continue;
     look(route_, chunk,

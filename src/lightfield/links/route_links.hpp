@@ -1,9 +1,9 @@
 // route_links: which texel every texel sees along pairs of directions, kept as links. As stencil_routing with a
 // scan (thesis, section 4.5), over an A-buffer that holds texel numbers instead of radiance: emit_links, its
-// first half, draws the scene into parts of many pairs' rasters at once, an instance each, and appends to
-// per-pixel lists; route_links, its second, looks up each texel of the tiles that look into such a part, and
+// first half, draws the scene into patches of many pairs' rasters at once, an instance each, and appends to
+// per-pixel lists; route_links, its second, looks up each texel of the tiles that look into such a patch, and
 // leaves what one pixel does not tell to route_doubts and route_rest (docs/algorithm.md). Reads the geometry;
-// writes the link table. Costs pixels of the parts times layers, texels of the tiles, and several times that
+// writes the link table. Costs pixels of the patches times layers, texels of the tiles, and several times that
 // for one ray in ten.
 #pragma once
 

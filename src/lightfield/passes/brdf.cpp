@@ -11,7 +11,7 @@ void Brdf::record(gpu::Frame& frame, const LightMap& map) const {
       reflect_,
       {gpu::reads("source", map.source), gpu::reads("albedo", map.albedo), gpu::reads("emission", map.emission),
        gpu::reads("total_irradiance", map.total_irradiance), gpu::writes("radiance", map.radiance)},
-      map.groups, map.groups);
+      map.workgroups, map.workgroups);
 }
 
 }  // namespace lichtveld::lightfield

@@ -54,7 +54,7 @@ void GeometryTexture::record(gpu::Frame& frame, const Geometry& geometry, const 
                 {gpu::reads("position", map.position), gpu::reads("face_normal", map.face_normal),
                  gpu::reads("WallsFirst", geometry.walls_first), gpu::fetches("walls", geometry.walls),
                  gpu::writes("near_walls", map.near_walls)},
-                map.groups, map.groups);
+                map.workgroups, map.workgroups);
 }
 
 void GeometryTexture::find_shown(gpu::Frame& frame, const LightMap& map) const {
@@ -62,7 +62,7 @@ void GeometryTexture::find_shown(gpu::Frame& frame, const LightMap& map) const {
       gutter_,
       {gpu::reads("position", map.position), gpu::reads("face_normal", map.face_normal),
        gpu::reads("cover", map.cover), gpu::reads("source", map.source), gpu::writes("shown", map.shown)},
-      map.groups, map.groups);
+      map.workgroups, map.workgroups);
 }
 
 }  // namespace lichtveld::lightfield

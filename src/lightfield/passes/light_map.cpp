@@ -49,7 +49,7 @@ gpu::Image atlas_image(const gpu::Device& device, const char* name, std::uint32_
 
 LightMap::LightMap(const gpu::Device& device, const TexelRecords& records)
     : size(records.size()),
-      groups((size + shaders::GROUP - 1) / shaders::GROUP),
+      workgroups((size + shaders::SIDE - 1) / shaders::SIDE),
       position(atlas_image(device, "position", size, rgba32f, Usage::eColorAttachment)),
       normal(atlas_image(device, "normal", size, rgba32f, Usage::eColorAttachment)),
       face_normal(atlas_image(device, "face_normal", size, rgba32f, Usage::eColorAttachment)),

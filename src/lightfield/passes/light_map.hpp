@@ -17,17 +17,17 @@ struct LightMap {
   LightMap(const gpu::Device& device, const TexelRecords& records);
 
   std::uint32_t size;
-  std::uint32_t groups;    // compute workgroups a side
-  gpu::Image position;     // xyz [m]; a: 1 on valid texels
-  gpu::Image normal;       // xyz: unit shading normal
-  gpu::Image face_normal;  // xyz: unit normal of the triangle; a: the triangle's number
-  gpu::Image near_walls;   // uint: the two nearest walls on its plane; distances of the first and of the third,
-                           // as bits [m]
-  gpu::Image albedo;       // rgb: 0..1
-  gpu::Image emission;     // rgb: Le [W m^-2 sr^-1]
-  gpu::Image source;       // uint: the texel whose light this one sends: TexelRecords::source()
-  gpu::Image shown;        // uint: the texel whose light players see; covered texels name theirs too
-  gpu::Image cover;        // weights [sr] of rays that start in contact with a surface, less all others
+  std::uint32_t workgroups;  // a side, of shaders::SIDE texels each
+  gpu::Image position;       // xyz [m]; a: 1 on valid texels
+  gpu::Image normal;         // xyz: unit shading normal
+  gpu::Image face_normal;    // xyz: unit normal of the triangle; a: the triangle's number
+  gpu::Image near_walls;  // uint: the two nearest walls on its plane; distances of the first and of the third,
+                          // as bits [m]
+  gpu::Image albedo;      // rgb: 0..1
+  gpu::Image emission;    // rgb: Le [W m^-2 sr^-1]
+  gpu::Image source;      // uint: the texel whose light this one sends: TexelRecords::source()
+  gpu::Image shown;       // uint: the texel whose light players see; covered texels name theirs too
+  gpu::Image cover;       // weights [sr] of rays that start in contact with a surface, less all others
   gpu::Image total_irradiance;  // rgb: E [W m^-2]; a: 1 on valid texels
   gpu::Image half_difference;   // rgb: by how much each half of the directions differs from E [W m^-2], signed
   gpu::Image radiance;          // rgb: L [W m^-2 sr^-1], gutters too; a: 1 on charts and gutters

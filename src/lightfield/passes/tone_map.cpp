@@ -20,12 +20,12 @@ void ToneMap::record(gpu::Frame& frame, const LightMap& map) const {
   frame.compute(count_,
                 {gpu::reads("radiance", map.radiance), gpu::reads("position", map.position),
                  gpu::writes("Histogram", histogram_)},
-                map.groups, map.groups);
+                map.workgroups, map.workgroups);
   frame.compute(expose_, {gpu::reads("Histogram", histogram_), gpu::writes("Exposure", exposure_)}, 1, 1);
   frame.compute(map_,
                 {gpu::reads("radiance", map.radiance), gpu::reads("shown", map.shown),
                  gpu::reads("Exposure", exposure_), gpu::writes("presented", map.presented)},
-                map.groups, map.groups);
+                map.workgroups, map.workgroups);
 }
 
 }  // namespace lichtveld::lightfield

@@ -27,7 +27,7 @@ void Blend::bounce_into_total(gpu::Frame& frame, const BounceSums& sums, const L
                  gpu::writes("bounce_irradiance_1", sums.bounce_irradiance[1]),
                  gpu::reads("position", map.position), gpu::writes("total_irradiance", map.total_irradiance),
                  gpu::writes("half_difference", map.half_difference)},
-                map.groups, map.groups);
+                map.workgroups, map.workgroups);
 }
 
 }  // namespace lichtveld::lightfield

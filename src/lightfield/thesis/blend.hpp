@@ -21,7 +21,7 @@ struct BounceSums {
 class Blend {
  public:
   explicit Blend(const gpu::Device& device);
-  // `half`: which of the bounce's two sums the direction belongs to; `groups`: LightMap::groups.
+  // `half`: which of the bounce's two sums the direction belongs to; `groups`: LightMap::workgroups.
   void psf_into_bounce(gpu::Frame& frame, const BounceSums& sums, std::uint32_t half,
                        std::uint32_t groups) const;
   // Both halves into total_irradiance, their disagreement into half_difference; clears the bounce.

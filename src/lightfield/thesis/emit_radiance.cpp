@@ -140,7 +140,7 @@ void EmitRadiance::record_stencil(gpu::Frame& frame, const shaders::EmitConstant
                  });
   }
   if (constants.count != 0) {
-    const auto groups = (store.size + shaders::GROUP - 1) / shaders::GROUP;
+    const auto groups = (store.size + shaders::SIDE - 1) / shaders::SIDE;
     frame.compute(count_.front(),
                   {gpu::sampled("stencil", *store.stencil, store.fetch), gpu::writes("Counted", counters)},
                   constants, groups, groups);

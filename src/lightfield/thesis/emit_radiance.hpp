@@ -2,7 +2,7 @@
 // A-buffer. Thesis, section 4.4; stencil routing: Myers and Bavoil 2007, "Stencil Routed A-Buffer". Subpass 1
 // sets the stencil of sample s to s + 1, so that the s-th fragment of a pixel finds a one in sample s alone;
 // subpass 2 writes colour and depth through that test and takes one off every sample. A device with fewer
-// samples than layers does this in several routed passes. The list kind hands out places of a per-pixel list by
+// samples than layers does this in several routed passes. The list kind hands out slots of a per-pixel list by
 // an atomic counter instead. Reads the geometry and `radiance`; writes the A-buffer. Costs fragments times
 // layers; on lavapipe the samples.
 #pragma once
@@ -25,7 +25,7 @@ struct LayerStore {
   vk::raii::Sampler fetch;  // nearest: for texelFetch
   // stencil: rgb radiance, a depth; one array layer a routed pass, one sample a layer
   std::unique_ptr<gpu::Image> routed, stencil;
-  // list: capacity places a pixel, and how many are filled
+  // list: capacity slots a pixel, and how many are filled
   std::unique_ptr<gpu::Buffer> layers, filled;
 
   // For reading, as abuffer_stencil.glsl and abuffer_list.glsl declare it.

@@ -24,7 +24,7 @@ void StencilRouting::record(gpu::Frame& frame, const shaders::PsfView& view, con
                    gpu::reads("near_walls", map.near_walls), gpu::writes("Counted", counters)});
   frame.compute(route_, bindings,
                 shaders::RoutingConstants{.view = view, .size = store.size, .count = count ? 1u : 0u},
-                map.groups, map.groups);
+                map.workgroups, map.workgroups);
 }
 
 ShowLayer::ShowLayer(const gpu::Device& device, const LayerStore& store)
@@ -36,7 +36,7 @@ void ShowLayer::record(gpu::Frame& frame, const LayerStore& store, std::uint32_t
                        const gpu::Image& shown) const {
   auto bindings = store.bindings();
   bindings.push_back(gpu::writes("shown_layer", shown));
-  const auto groups = (store.size + shaders::GROUP - 1) / shaders::GROUP;
+  const auto groups = (store.size + shaders::SIDE - 1) / shaders::SIDE;
   frame.compute(show_, bindings, shaders::LayerConstants{.size = store.size, .layer = layer}, groups, groups);
 }
 

@@ -119,7 +119,7 @@ void Thesis::render_psfs(Range range, bool count, Solution& solution) {
     const auto view = psf_view(directions_[psf], geometry_.sphere, layered_->store.size);
     layered_->emit.record(frame, view, geometry_, map_, layered_->store, settings_.layers, count, counters_);
     layered_->route.record(frame, view, layered_->store, geometry_, map_, sums_, count, counters_);
-    blend_.psf_into_bounce(frame, sums_, directions_[psf].half, map_.groups);
+    blend_.psf_into_bounce(frame, sums_, directions_[psf].half, map_.workgroups);
   }
   frame.to_host(counters_);
   frame.submit_and_wait();
