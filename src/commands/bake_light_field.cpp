@@ -13,7 +13,7 @@ namespace {
 // engines that keep nothing.
 nlohmann::ordered_json look_again(lightfield::LightField& light, const BakeOptions& options,
                                   lightfield::Solution& solution) {
-  const auto check = light.check(options.settings.psf);
+  const auto check = light.check_links(options.settings.psf);
   if (check.links == 0) return {};
   solution.misses = check.misses;
   solution.rays_unknown = check.rays_unknown;

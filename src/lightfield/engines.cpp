@@ -13,6 +13,7 @@ namespace {
 template <typename Field>
 std::unique_ptr<LightField> make(const gpu::Device& device, const scene::Scene& scene,
                                  const Settings& settings) {
+  check(settings);
   return std::make_unique<Field>(device, scene, settings);
 }
 

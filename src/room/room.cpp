@@ -96,7 +96,7 @@ class Room::Pipeline {
 
   // Between maps, while nothing moves: whether what is kept is what a fresh start would find.
   void check() {
-    const auto found = light_->check(pairs_a_check);
+    const auto found = light_->check_links(pairs_a_check);
     if (found.links == 0) return;
     log_.count("links_checked", found.links);
     log_.count("links_differing", found.differing);

@@ -138,7 +138,7 @@ TEST_F(Moves, ManyMovesLeaveNoTrace) {
   }
   settled(*links, offsets);
   EXPECT_LT(rel_rmse(links->irradiance(), fresh(scene_, settings_, offsets)), 2e-3);
-  const auto check = links->check(settings_.psf);
+  const auto check = links->check_links(settings_.psf);
   EXPECT_GT(check.links, 0u);
   // The cubes also went through walls and through each other, as no player's can.
   EXPECT_LE(static_cast<double>(check.differing), 1e-4 * static_cast<double>(check.links));
@@ -150,11 +150,11 @@ TEST_F(Moves, ManyMovesLeaveNoTrace) {
 TEST_F(Moves, LinksAreLookedAtAgain) {
   const auto links = make_light_field("links", device(), scene_, settings_);
   auto offsets = at_rest(scene_);
-  EXPECT_EQ(links->check(2).links, 0u) << "there are none yet";
+  EXPECT_EQ(links->check_links(2).links, 0u) << "there are none yet";
   const auto solution = settled(*links, offsets);
   std::uint64_t misses = 0, looked_at = 0;
   for (std::uint32_t pair = 0; pair < settings_.psf / 2; pair += 2) {
-    const auto check = links->check(2);
+    const auto check = links->check_links(2);
     EXPECT_GT(check.links, 0u);
     EXPECT_EQ(check.differing, 0u) << "pair " << pair << ": nothing has moved";
     misses += check.misses;
@@ -162,10 +162,10 @@ TEST_F(Moves, LinksAreLookedAtAgain) {
   }
   EXPECT_EQ(misses, solution.misses);
   EXPECT_EQ(looked_at, std::uint64_t{solution.texels_valid} * settings_.psf / 2);
-  EXPECT_EQ(links->check(2).links, 0u);
+  EXPECT_EQ(links->check_links(2).links, 0u);
   offsets[1].x -= 0.3f;
   settled(*links, offsets);
-  const auto after = links->check(settings_.psf);
+  const auto after = links->check_links(settings_.psf);
   EXPECT_EQ(after.links, looked_at);
   EXPECT_EQ(after.differing, 0u);
   EXPECT_LT(rel_rmse(links->irradiance(), fresh(scene_, settings_, offsets)), 2e-3);

@@ -52,8 +52,8 @@ void LightField::advance(const Enough& enough) {
   light_ = settled ? Light::settled : Light::rising;
 }
 
-LinkCheck LightField::check(std::uint32_t pairs) {
-  return light_ == Light::unknown ? LinkCheck{} : check_kept(pairs);
+LinkCheck LightField::check_links(std::uint32_t pairs) {
+  return light_ == Light::unknown ? LinkCheck{} : check_kept_links(pairs);
 }
 
 }  // namespace lichtveld::lightfield

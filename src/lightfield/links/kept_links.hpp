@@ -25,7 +25,7 @@ class KeptLinks {
   void link(const scene::Offsets& to, const Moves& moves, Solution& solution);
   // Sums direct light up afresh, where links have changed since: what they have kept, by construction.
   void sum_direct();
-  // As LightField::check, once all is linked.
+  // As LightField::check_links, once all is linked.
   LinkCheck check(std::uint32_t pairs);
   // Writes map().shown: what lies open to the light where the bodies are.
   void find_shown(gpu::Frame& frame);

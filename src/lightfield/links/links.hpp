@@ -23,7 +23,7 @@ class Links final : public LightField {
  private:
   bool compute(Light before, const Moves& moves, const Enough& enough, Solution& solution) override;
   double error_estimate() const override;
-  LinkCheck check_kept(std::uint32_t pairs) override { return links_.check(pairs); }
+  LinkCheck check_kept_links(std::uint32_t pairs) override { return links_.check(pairs); }
 
   void start();
   void bounce(Solution& solution);

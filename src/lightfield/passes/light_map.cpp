@@ -67,7 +67,6 @@ LightMap::LightMap(const gpu::Device& device, const TexelRecords& records)
 }
 
 void check_on(const gpu::Device& device, const Settings& settings) {
-  check(settings);
   const auto largest = std::max(settings.size, settings.raster());
   if (largest > device.summary().max_image_size)
     throw std::invalid_argument("a size of " + std::to_string(largest) +

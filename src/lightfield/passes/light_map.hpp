@@ -34,7 +34,7 @@ struct LightMap {
   gpu::Image presented;         // sRGB RGBA8: tone-mapped L
 };
 
-// check(settings), and that the device can do images of that size.
+// Throws std::invalid_argument if the device cannot do images of that size.
 void check_on(const gpu::Device& device, const Settings& settings);
 
 // The presented map.

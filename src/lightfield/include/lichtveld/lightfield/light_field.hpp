@@ -85,7 +85,7 @@ class LightField {
   // Looks at up to `pairs` pairs of directions of what is kept, those that have not been looked at since the
   // last move. Nothing once all have, before any light is known, and for engines that keep nothing. None is
   // expected to differ. (A pixel's centre on the border of two texels may see either.)
-  LinkCheck check(std::uint32_t pairs);
+  LinkCheck check_links(std::uint32_t pairs);
 
   // From now on settle() shows what each pass puts out for the direction of that number in its first bounce,
   // and at its end: `stage` is the pass' name, with a suffix where it has several outputs. Engines without
@@ -108,7 +108,7 @@ class LightField {
   virtual bool compute(Light before, const Moves& moves, const Enough& enough, Solution& solution) = 0;
   // Solution::error_estimate of what was computed last.
   virtual double error_estimate() const = 0;
-  virtual LinkCheck check_kept(std::uint32_t /*pairs*/) { return {}; }
+  virtual LinkCheck check_kept_links(std::uint32_t /*pairs*/) { return {}; }
 
  private:
   Moves moves_since() const;
