@@ -5,7 +5,7 @@ namespace lichtveld::commands {
 nlohmann::ordered_json report(const gpu::Device& device, const std::string& method,
                               const lightfield::Settings& settings, const lightfield::Solution& solution,
                               const gpu::Times& times, double total_ms) {
-  nlohmann::ordered_json passes, host, memory;
+  auto passes = nlohmann::ordered_json::object(), host = passes, memory = passes;
   for (const auto& [name, time] : times.passes) passes[name] = {{"calls", time.calls}, {"gpu_ms", time.gpu_ms}};
   for (const auto& [name, time] : times.host) host[name] = {{"calls", time.calls}, {"ms", time.ms}};
   std::uint64_t total_bytes = 0;

@@ -122,7 +122,7 @@ INSTANTIATE_TEST_SUITE_P(
                {"too long", "shorter"}},
         BadUse{"ReportNameTooLong", bake + "--report OUT" + long_name, 2, {"too long", "shorter"}},
         BadUse{"DumpNameTooLong", bake + "--method thesis --dump /tmp/" + long_name, 2, {"folder", "too long"}},
-        BadUse{"BenchOutNameTooLong", "bench --out /tmp/" + long_name, 2, {"folder", "too long"}},
+        BadUse{"BenchOutNameTooLong", "bench --scene " + cornell + " --out /tmp/" + long_name, 2, {"folder", "too long"}},
         BadUse{"OutAndReportAreOne", bake + "--report OUT", 2, {"--out", "--report", "same file", "its own"}},
         BadUse{"OutAndReportAreOneSpeltOtherwise", bake + "--report OUT/../E.exr", 2, {"same file"}},
         BadUse{"OutIsOfADumpedPass",
