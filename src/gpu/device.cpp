@@ -248,6 +248,9 @@ Device::Device(const DeviceOptions& options) {
     queue_ = device_.getQueue(family, 0);
     commands_ = vk::raii::CommandPool(
         device_, {.flags = vk::CommandPoolCreateFlagBits::eTransient, .queueFamilyIndex = family});
+    name(device_, "device");
+    name(queue_, "queue");
+    name(commands_, "frame/commands");
   } catch (const vk::SystemError& error) {
     throw NoDevice(std::string("no Vulkan device can be used (") + error.what() +
                    "): install a driver (mesa-vulkan-drivers has lavapipe, which needs no GPU)");

@@ -21,14 +21,21 @@ vk::RenderingAttachmentInfo attachment_info(const Attachment& attachment, vk::Im
           .clearValue = attachment.clear.value_or(vk::ClearValue{})};
 }
 
+std::string joined(const std::vector<std::string>& labels) {
+  std::string name = "frame";
+  for (const auto& label : labels) name.append("/").append(label);
+  return name;
+}
+
 }  // namespace
 
 Frame::Frame(const Device& device, const std::vector<std::string>& labels)
-    : device_(device), labels_(labels.size()) {
+    : device_(device), labels_(labels.size()), name_(joined(labels)) {
   commands_ = std::move(vk::raii::CommandBuffers(device.handle(), {.commandPool = *device.commands(),
                                                                    .level = vk::CommandBufferLevel::ePrimary,
                                                                    .commandBufferCount = 1})
                             .front());
+  device_.name(commands_, name_);
   commands_.begin({.flags = vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
   if (has_labels())
     for (const auto& label : labels) commands_.beginDebugUtilsLabelEXT({.pLabelName = label.c_str()});
@@ -170,6 +177,7 @@ void Frame::submit() {
     for (std::size_t label = 0; label < labels_; ++label) commands_.endDebugUtilsLabelEXT();
   commands_.end();
   vk::raii::Fence fence(device_.handle(), vk::FenceCreateInfo{});
+  device_.name(fence, name_);
   const vk::CommandBufferSubmitInfo submit{.commandBuffer = *commands_};
   device_.queue().submit2(vk::SubmitInfo2{.commandBufferInfoCount = 1, .pCommandBufferInfos = &submit}, *fence);
   submitted_ = std::move(fence);

@@ -14,8 +14,11 @@ vk::ShaderStageFlags stages_of(vk::PipelineBindPoint bind_point) {
 }
 
 vk::raii::ShaderModule make_module(const Device& device, const Shader& shader) {
-  return {device.handle(),
-          vk::ShaderModuleCreateInfo{.codeSize = shader.words.size_bytes(), .pCode = shader.words.data()}};
+  vk::raii::ShaderModule module(
+      device.handle(),
+      vk::ShaderModuleCreateInfo{.codeSize = shader.words.size_bytes(), .pCode = shader.words.data()});
+  device.name(module, std::string(shader.name));
+  return module;
 }
 
 class SpecialisationInfo {
@@ -63,6 +66,8 @@ Pipeline::Pipeline(const Device& device, std::string name, Interface interface,
                                           .pSetLayouts = &*set_layout_,
                                           .pushConstantRangeCount = interface_.push_bytes > 0 ? 1u : 0u,
                                           .pPushConstantRanges = &range}};
+  device.name(set_layout_, name_);
+  device.name(layout_, name_);
 }
 
 ComputePipeline::ComputePipeline(const Device& device, std::string name, const Shader& shader,

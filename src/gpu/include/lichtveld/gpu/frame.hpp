@@ -89,8 +89,8 @@ class Draw {
 
 class Frame {
  public:
-  // Starts recording. Times of its passes are added to Device::times() when it has been waited for. Captures show its
-  // passes under these labels, outermost first: what they are a part of.
+  // Starts recording. Times of its passes are added to Device::times() when it has been waited for. Captures
+  // show its passes under these labels, outermost first: what they are a part of.
   explicit Frame(const Device& device, const std::vector<std::string>& labels = {});
   ~Frame();
   Frame(const Frame&) = delete;
@@ -156,6 +156,7 @@ class Frame {
 
   const Device& device_;
   const std::size_t labels_;  // around all passes
+  const std::string name_;    // those, joined
   vk::raii::CommandBuffer commands_ = nullptr;
   vk::raii::Fence submitted_ = nullptr;  // until it has been waited for
   std::vector<vk::raii::QueryPool> queries_;
