@@ -40,9 +40,10 @@ void check_outputs(const BakeOptions& options) {
   files::check_place(options.out, ".exr");
   if (!options.png.empty()) files::check_place(options.png, ".png");
   if (!options.report.empty()) files::check_place(options.report);
+  check(options.capture);
   std::vector<files::NamedFile> files = {{"the scene", options.scene}};
   for (const auto& [name, file] :
-       {std::pair{"--out", options.out}, {"--png", options.png}, {"--report", options.report}})
+       {std::pair{"--out", options.out}, {"--png", options.png}, {"--report", options.report}, {"--capture", options.capture.file}})
     if (!file.empty()) files.push_back({name, file});
   files::check_distinct(files);
   if (options.dump.empty()) return;
@@ -109,19 +110,23 @@ void add_bake(CLI::App& application) {
   command->add_option("--spp", options->spp, "Paths a texel of --method reference, 1..1000000")
       ->capture_default_str();
   add_device_options(*command, options->device);
+  add_capture_options(*command, options->capture, "with --live all before the last move's");
   command->callback([options, command] {
     choose_method(*command, options->method);
     // What the other method would take is a mistake, not something to pass over in silence.
     const std::vector<std::string> of_others =
         options->method == reference_method
-            ? std::vector<std::string>{"--psf",    "--psf-size", "--weights", "--abuffer", "--sort",
-                                       "--layers", "--live",     "--dump",    "--dump-psf"}
+            ? std::vector<std::string>{"--psf",    "--psf-size", "--weights", "--abuffer",  "--sort",
+                                       "--layers", "--live",     "--dump",    "--dump-psf", "--capture"}
         : options->method == "links"
             ? std::vector<std::string>{"--spp", "--abuffer", "--sort", "--dump", "--dump-psf"}
             : std::vector<std::string>{"--spp"};
     for (const auto& name : of_others)
       if (command->count(name) > 0)
         throw UsageError(name + " means nothing to --method " + options->method + "; leave it out");
+    if (options->capture.after && !options->live)
+      throw UsageError(
+          "--capture-after counts the updates of --live, and without it there is one; leave it out");
     bake(*options);
   });
 }

@@ -18,6 +18,7 @@ struct BakeOptions {
   bool live = false;
   std::string method = "links";
   gpu::DeviceOptions device;
+  CaptureOptions capture;
   lightfield::Settings settings;
   std::uint32_t spp = 256;  // of the reference
 };

@@ -23,14 +23,24 @@ nlohmann::ordered_json look_again(lightfield::LightField& light, const BakeOptio
 }
 
 // As a server: at rest first, then a light map after every move.
-void live(lightfield::LightField& light, const BakeJob& job) {
+void live(lightfield::LightField& light, const BakeJob& job, std::optional<gpu::Capture>& capture) {
   auto offsets = job.at_rest();
-  light.settle();
+  update(capture, [&] { light.settle(); });
   for (const auto& move : job.moves) {
     offsets[move.body] += move.by;
     light.place(offsets);
-    light.settle();
+    update(capture, [&] { light.settle(); });
   }
+}
+
+// Of --live: at rest, and after every move. The last is what a capture is for, if nothing else is said.
+std::optional<gpu::Capture> capture_for(const BakeOptions& options, const BakeJob& job) {
+  const auto last = options.live ? static_cast<std::uint32_t>(job.moves.size()) : 0;
+  if (options.capture.after.value_or(0) > last)
+    throw UsageError("--capture-after " + std::to_string(*options.capture.after) + ": --live makes " +
+                     std::to_string(last + 1) + " updates, one at rest and one a move; choose 0.." +
+                     std::to_string(last));
+  return make_capture(options.capture, last);
 }
 
 lightfield::LightField::StageObserver dump_into(const std::filesystem::path& folder) {
@@ -42,16 +52,20 @@ lightfield::LightField::StageObserver dump_into(const std::filesystem::path& fol
 }  // namespace
 
 Baked bake_light_field(const BakeOptions& options, const BakeJob& job) {
+  auto capture = capture_for(options, job);
   const gpu::Device device(options.device);
   const auto start = std::chrono::steady_clock::now();
   auto total = std::make_unique<gpu::TimeLedger::Stage>(device.times(), "rest");
   const auto light = device.times().time("set_up", [&] {
     return lightfield::make_light_field(options.method, device, job.scene, options.settings);
   });
-  if (options.live) live(*light, job);
+  if (options.live) live(*light, job, capture);
   if (!options.dump.empty()) light->observe(dump_into(options.dump), options.dump_psf);
   light->place(job.moved());
-  auto solution = light->settle();
+  lightfield::Solution solution;
+  const auto settle = [&] { solution = light->settle(); };
+  // What --live has computed is only looked at once more.
+  options.live ? settle() : update(capture, settle);
   Baked baked{.irradiance = light->irradiance(), .shown = {}, .report = {}};
   const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
   total.reset();

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "lichtveld/files/output.hpp"
 #include "lichtveld/lightfield/directions.hpp"
 #include "lichtveld/lightfield/engine.hpp"
 
@@ -50,6 +51,31 @@ void check_validation(const gpu::Device& device) {
   if (!messages.empty())
     throw std::runtime_error("the validation layers had " + std::to_string(messages.size()) +
                              " complaints (above): a bug, please report it with this command line");
+}
+
+void add_capture_options(CLI::App& command, CaptureOptions& options, const std::string& after) {
+  auto* capture = command
+                      .add_option("--capture", options.file,
+                                  "Let RenderDoc capture an update of the light into this file; needs the "
+                                  "package librenderdoc")
+                      ->type_name("FILE.rdc");
+  command.add_option("--capture-after", options.after, "Updates of the light before the one that is captured")
+      ->type_name("N")
+      ->default_str(after)
+      ->needs(capture);
+}
+
+void check(const CaptureOptions& options) {
+  if (!options.file.empty()) files::check_place(options.file, ".rdc");
+}
+
+std::optional<gpu::Capture> make_capture(const CaptureOptions& options, std::uint32_t after_by_default) {
+  if (options.file.empty()) return {};
+  return std::make_optional<gpu::Capture>(options.file, options.after.value_or(after_by_default));
+}
+
+void update(std::optional<gpu::Capture>& capture, const std::function<void()>& work) {
+  capture ? capture->around(work) : work();
 }
 
 void add_method_option(CLI::App& command, std::string& method, bool with_reference) {

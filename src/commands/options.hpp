@@ -2,10 +2,13 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <functional>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "lichtveld/gpu/capture.hpp"
 #include "lichtveld/gpu/device.hpp"
 #include "lichtveld/lightfield/settings.hpp"
 #include "lichtveld/scene/scene.hpp"
@@ -22,6 +25,23 @@ void add_device_options(CLI::App& command, gpu::DeviceOptions& options);
 
 // Throws std::runtime_error if the validation layers complained: a programmer's error must not pass unseen.
 void check_validation(const gpu::Device& device);
+
+struct CaptureOptions {
+  std::string file;                    // empty: no capture
+  std::optional<std::uint32_t> after;  // updates before the one that is captured
+};
+
+// --capture and --capture-after. `after` says what is captured without the latter.
+void add_capture_options(CLI::App& command, CaptureOptions& options, const std::string& after);
+
+// Throws files::OutputError for a file that cannot be: worth asking before long work.
+void check(const CaptureOptions& options);
+
+// Nothing, if none is asked for. Make it before the device.
+std::optional<gpu::Capture> make_capture(const CaptureOptions& options, std::uint32_t after_by_default);
+
+// An update of the light, captured if it is its turn.
+void update(std::optional<gpu::Capture>& capture, const std::function<void()>& work);
 
 // What computes the light: an engine of the light field, or path tracing.
 inline constexpr const char* reference_method = "reference";

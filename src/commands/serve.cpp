@@ -34,6 +34,7 @@ struct ServeOptions {
   std::string method = "links";
   bool chosen_quality = false;
   gpu::DeviceOptions device;
+  CaptureOptions capture;
   lightfield::Settings settings{
       .thesis = {.abuffer = lightfield::ABuffer::list, .sort = lightfield::Sort::scan}};
 };
@@ -106,11 +107,13 @@ void serve(ServeOptions options) {
   if (!(options.rate > 0 && options.rate <= 1000))
     throw UsageError("--rate: maps a second, above 0 and up to 1000");
   lightfield::check(options.settings);
+  check(options.capture);
   std::stop_source stop;
   const StopSignals signals([&] { stop.request_stop(); });
   const auto scene = scene::load(options.scene);
   const auto token = read_token(options.token_file);
   const auto& engine = lightfield::engine(options.method);
+  auto capture = make_capture(options.capture, 0);
   const gpu::Device device(options.device);
   if (!options.chosen_quality)
     options.settings = room::finest_within(budget_a_map, engine, device, scene, options.settings,
@@ -123,7 +126,8 @@ void serve(ServeOptions options) {
   room::Room room(scene, engine.make(device, scene, options.settings),
                   {.rate = options.rate,
                    .publish = [&](const room::Map& map) { server->publish(encoded(map)); },
-                   .ended = [&] { return !server->refused().empty(); }});
+                   .ended = [&] { return !server->refused().empty(); },
+                   .around_update = [&](const std::function<void()>& work) { update(capture, work); }});
   const Closing closing{room, server};
   const std::stop_callback on_stop(stop.get_token(), [&] { room.stop(); });
   server = std::make_unique<stream::Server>(stream::ServerOptions{
@@ -146,6 +150,9 @@ void serve(ServeOptions options) {
   const auto totals = server->statistics();
   spdlog::info("stopped: {} maps and {} MiB sent, {} maps skipped by slow clients, {} messages refused",
                totals.maps_sent, totals.bytes_sent >> 20, totals.maps_skipped, totals.messages_refused);
+  if (capture && !capture->taken())
+    spdlog::warn("{} is not there: stopped before {} updates; try a smaller --capture-after",
+                 capture->file().string(), capture->skipped() + 1);
   check_validation(device);
 }
 
@@ -169,6 +176,7 @@ void add_serve(CLI::App& application) {
   add_light_field_options(*command, options->settings);
   add_step_bounces_option(*command, options->settings);
   add_device_options(*command, options->device);
+  add_capture_options(*command, options->capture, "0");
   command->callback([options, command] {
     choose_method(*command, options->method);
     if (command->count("--step-bounces") > 0 && (options->method != "links" || options->settings.bounces))

@@ -86,9 +86,12 @@ class Room::Pipeline {
   void update(const lightfield::LightField::Enough& enough) {
     light_->place(offsets_of(scene_, places_));
     if (settled()) return;
-    auto shown = log_.time("update", [&] {
-      light_->step(enough);
-      return light_->shown();
+    lightfield::Shown shown;
+    options_.around_update([&] {
+      shown = log_.time("update", [&] {
+        light_->step(enough);
+        return light_->shown();
+      });
     });
     log_.set_passes(light_->times().passes);
     sender_.send({std::move(shown), places_});

@@ -26,6 +26,9 @@ struct Options {
   std::function<void(Map map)> publish;
   // Asked between maps, on run()'s thread: true ends it. May be empty.
   std::function<bool()> ended = {};
+  // Called for each map, on run()'s thread: calls what it is given once, which computes the map.
+  std::function<void(const std::function<void()>& update)> around_update =
+      [](const std::function<void()>& update) { update(); };
 };
 
 class Room {
