@@ -5,6 +5,7 @@
 #include "lichtveld/commands/commands.hpp"
 #include "lichtveld/files/output.hpp"
 #include "options.hpp"
+#include "version.hpp"
 
 namespace lichtveld::commands {
 
@@ -49,6 +50,7 @@ int run(int argc, char** argv) {
   spdlog::set_pattern("%^%l%$: %v");
   CLI::App application("Shared diffuse global illumination by virtual light fields", "lichtveld");
   application.require_subcommand(1);
+  application.set_version_flag("--version", version, "Version, commit, device and libraries");
   application.set_help_all_flag("--help-all", "The help of every command");
   add_bake(application);
   add_serve(application);

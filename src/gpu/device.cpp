@@ -203,6 +203,11 @@ vk::raii::Device make_device(const vk::raii::PhysicalDevice& physical, std::uint
                                .ppEnabledExtensionNames = device_extensions.data()}};
 }
 
+NoDevice unusable(const vk::SystemError& error) {
+  return NoDevice(std::string("no Vulkan device can be used (") + error.what() +
+                  "): install a driver (mesa-vulkan-drivers has lavapipe, which needs no GPU)");
+}
+
 }  // namespace
 
 std::vector<DeviceSummary> list_devices() {
@@ -224,6 +229,15 @@ void MemoryLedger::add(const std::string& name, std::uint64_t bytes) {
 void MemoryLedger::remove(const std::string& name, std::uint64_t bytes) {
   const auto entry = bytes_.find(name);
   if ((entry->second -= bytes) == 0) bytes_.erase(entry);
+}
+
+DeviceSummary chosen_device(const std::string& wanted) {
+  try {
+    const vk::raii::Context context;
+    return summarise(choose(make_instance(context, false), wanted));
+  } catch (const vk::SystemError& error) {
+    throw unusable(error);
+  }
 }
 
 Device::Device(const DeviceOptions& options) {
@@ -252,8 +266,7 @@ Device::Device(const DeviceOptions& options) {
     name(queue_, "queue");
     name(commands_, "frame/commands");
   } catch (const vk::SystemError& error) {
-    throw NoDevice(std::string("no Vulkan device can be used (") + error.what() +
-                   "): install a driver (mesa-vulkan-drivers has lavapipe, which needs no GPU)");
+    throw unusable(error);
   }
   memory_ = physical_.getMemoryProperties();
   summary_ = summarise(physical_);

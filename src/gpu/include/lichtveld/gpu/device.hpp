@@ -41,6 +41,9 @@ struct DeviceSummary {
 // Every Vulkan device, in the order in which they would be chosen. Empty if there is none.
 std::vector<DeviceSummary> list_devices();
 
+// The one that Device would take for DeviceOptions::device. Throws NoDevice as it does.
+DeviceSummary chosen_device(const std::string& wanted);
+
 // How much device memory each living buffer and image holds, by name.
 class MemoryLedger {
  public:
