@@ -35,8 +35,8 @@ Frame::Frame(const Device& device, const std::vector<std::string>& labels)
                                                                    .level = vk::CommandBufferLevel::ePrimary,
                                                                    .commandBufferCount = 1})
                             .front());
-  device_.name(commands_, name_);
   commands_.begin({.flags = vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
+  device_.name(commands_, name_);  // now: RenderDoc forgets what was said of it before
   if (has_labels())
     for (const auto& label : labels) commands_.beginDebugUtilsLabelEXT({.pLabelName = label.c_str()});
 }
