@@ -86,7 +86,7 @@ TEST_F(SceneCornell, RoomBlocksAndCubesAreClosed) {
                                      {"tall_block", 1.65 * 1.65 * 3.3},
                                      {"cube1", 0.55 * 0.55 * 0.55},
                                      {"cube2", 0.55 * 0.55 * 0.55}}) {
-    const auto body = integrate([&](const std::string& node) { return node == name; });
+    const auto body = integrate([name = name](const std::string& node) { return node == name; });
     EXPECT_LT(glm::length(body.normal), 1e-5) << name;
     EXPECT_NEAR(body.volume, volume, 0.03 * volume) << name;
   }
