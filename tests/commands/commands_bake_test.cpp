@@ -14,7 +14,9 @@ namespace {
 
 using nlohmann::json;
 using ::testing::AllOf;
+using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
+using ::testing::MatchesRegex;
 
 class Bake : public ::testing::Test {
  protected:
@@ -207,6 +209,24 @@ TEST(Info, ListsDevicesAndWhatASceneNeeds) {
   for (const char* words : {"llvmpipe", "samples a pixel      4 (8 stencil-routed layers take 2 passes)",
                             "usable               yes", "cube1", "cube2", "valid texels"})
     EXPECT_THAT(ran.output, HasSubstr(words));
+}
+
+TEST(Version, NamesTheCommitTheDeviceAndTheLibraries) {
+  const auto ran = run("--version");
+  EXPECT_EQ(ran.status, 0) << ran.output;
+  EXPECT_THAT(
+      ran.output,
+      MatchesRegex("lichtveld [0-9]+\\.[0-9]+\\.[0-9]+ \\((unknown|[0-9a-f]{12,40}(-dirty)?)\\)\n(.|\n)*"));
+  EXPECT_THAT(ran.output, HasSubstr("device               llvmpipe"));
+  for (const char* library :
+       {"Vulkan headers", "Embree", "OpenImageIO", "libdatachannel", "nlohmann json", "spdlog", "fmt", "CLI11"})
+    EXPECT_THAT(ran.output, ContainsRegex(std::string(library) + " +[0-9]+\\.[0-9]+")) << library;
+}
+
+TEST(Version, IsStatus0WithoutADevice) {
+  const auto ran = run("--version", "VK_ICD_FILENAMES=/nonexistent VK_DRIVER_FILES=/nonexistent");
+  EXPECT_EQ(ran.status, 0) << ran.output;
+  EXPECT_THAT(ran.output, HasSubstr("no Vulkan device"));
 }
 
 TEST(Help, IsStatus0) {

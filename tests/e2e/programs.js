@@ -102,6 +102,7 @@ export async function signaling(t, { scene = scenePath, options = [] } = {}) {
     /** The running relay, and a way to start another in its place. */
     first,
     relay,
-    serve: () => new Program(t, 'server', executable, [...serveArgs, '--bind', '127.0.0.1', ...quick]),
+    serve: (...more) =>
+      new Program(t, 'server', executable, [...serveArgs, '--bind', '127.0.0.1', ...quick, ...more]),
   };
 }
