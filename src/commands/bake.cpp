@@ -110,7 +110,7 @@ void add_bake(CLI::App& application) {
   command->add_option("--spp", options->spp, "Paths a texel of --method reference, 1..1000000")
       ->capture_default_str();
   add_device_options(*command, options->device);
-  add_capture_options(*command, options->capture, "with --live all before the last move's");
+  add_capture_options(*command, options->capture, "as many as leave the last");
   command->callback([options, command] {
     choose_method(*command, options->method);
     // What the other method would take is a mistake, not something to pass over in silence.

@@ -111,6 +111,22 @@ TEST_F(LiveRoom, ShowsTheRoomAtRestAndThenFollowsItsBodies) {
   EXPECT_GT(difference(first.shown.bytes, last.shown.bytes), 0.3) << "the moves must matter";
 }
 
+TEST_F(LiveRoom, EachUpdateIsHandedToWhatIsAroundIt) {
+  Audience audience;
+  std::size_t updates = 0;
+  Room room(scene_, light(),
+            {.rate = 1000,
+             .publish = [&](Map map) { audience.take(std::move(map)); },
+             .around_update =
+                 [&](const std::function<void()>& update) {
+                   update();
+                   ++updates;
+                 }});
+  room.begin();
+  EXPECT_EQ(updates, 1u);
+  audience.wait_for(1);
+}
+
 // Any number of bodies moves, and those that are left out stand at rest.
 TEST_F(LiveRoom, BodiesAreAList) {
   const auto rest = places_at_rest(scene_);
