@@ -50,12 +50,12 @@ std::vector<const Binding*> match(const Interface& interface, const std::vector<
     if (slot == slots.end())
       refuse(interface, {"binding \"", binding.name, "\" (", described(binding),
                          ") is not in the shader, which declares ", names_of(slots)});
-    const Binding*& place = matched[slot - slots.begin()];
-    if (place != nullptr)
-      refuse(interface, {"binding \"", binding.name, "\" is given twice: as ", described(*place), " and as ",
+    const Binding*& taken = matched[slot - slots.begin()];
+    if (taken != nullptr)
+      refuse(interface, {"binding \"", binding.name, "\" is given twice: as ", described(*taken), " and as ",
                          described(binding)});
     check(interface, *slot, binding);
-    place = &binding;
+    taken = &binding;
   }
   const auto missing = std::find(matched.begin(), matched.end(), nullptr);
   if (missing != matched.end()) {

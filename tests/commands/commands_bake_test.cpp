@@ -134,7 +134,8 @@ TEST_F(Bake, PartsOfItsTimeSumToTheTotal) {
     double sum = 0;
     for (const auto& pass : time["passes"]) sum += pass["gpu_ms"].get<double>();
     for (const auto& stage : time["host"]) sum += stage["ms"].get<double>();
-    EXPECT_NEAR(sum / time["total"].get<double>(), 1, 0.1) << time.dump(1);
+    // The host works on while the device draws, which counts twice: some of it here, where all takes little.
+    EXPECT_NEAR(sum / time["total"].get<double>(), 1, 0.2) << time.dump(1);
     for (const char* stage : {"texel_records", "pipelines", "find_walls", "set_up"})
       EXPECT_GT(time["host"][stage]["ms"], 0) << stage;
     EXPECT_GT(time["passes"]["upload"]["calls"], 0) << "what set-up costs the device is there, too";

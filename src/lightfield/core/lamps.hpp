@@ -10,8 +10,8 @@ namespace lichtveld::lightfield {
 
 class Lamps {
  public:
-  // Of places that send so much (Le [W m^-2 sr^-1]), lamps first as is_lamp() says.
-  explicit Lamps(const std::vector<glm::vec3>& emission_of_places);
+  // What each lamp sends, in their order, and the brightest of all places, any channel [W m^-2 sr^-1].
+  Lamps(std::vector<glm::vec3> emission, float brightest);
 
   // What emits less than this share of the brightest is no lamp: the whole numbers that direct light is summed
   // in would not tell its shades. A bounce gathers its light with what surfaces reflect.
@@ -28,7 +28,7 @@ class Lamps {
  private:
   std::vector<glm::vec3> emission_;
   std::uint32_t alike_ = 0;
-  float brightest_ = 0;
+  float brightest_;
 };
 
 }  // namespace lichtveld::lightfield

@@ -1,6 +1,7 @@
 #include "core/texel_records.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "lichtveld/scene/atlas.hpp"
 #include "shared.h"
@@ -66,25 +67,36 @@ TexelRecord record_of(const scene::Scene& scene, std::uint32_t size, const scene
 std::vector<TexelRecord> records_of(const scene::Scene& scene, std::uint32_t size) {
   const auto surfaces = surface_of_triangles(scene);
   const auto texels = scene::valid_texels(scene, size);
-  std::vector<const scene::AtlasTexel*> at(std::size_t{size} * size, nullptr);
-  for (const auto& texel : texels) at[texel.index] = &texel;
+  const auto emission_of = [&](const scene::AtlasTexel& texel) -> const glm::vec3& {
+    return scene.materials[scene.surfaces[surfaces[texel.at.triangle]].material].emission;
+  };
+  float brightest = 0;
+  std::vector<std::uint32_t> at(std::size_t{size} * size, no_record);
+  for (std::uint32_t index = 0; index < texels.size(); ++index) {
+    brightest = std::max(brightest, Lamps::strength(emission_of(texels[index])));
+    at[texels[index].index] = index;
+  }
   std::vector<TexelRecord> records;
   records.reserve(texels.size());
-  float brightest = 0;
-  in_blocks(size, [&](std::uint32_t atlas) {
-    if (at[atlas] == nullptr) return;
-    records.push_back(record_of(scene, size, *at[atlas], surfaces[at[atlas]->at.triangle]));
-    brightest = std::max(brightest, Lamps::strength(records.back().emission));
-  });
-  std::ranges::stable_partition(
-      records, [&](const TexelRecord& record) { return Lamps::is_lamp(record.emission, brightest); });
+  for (const bool lamps : {true, false})
+    in_blocks(size, [&](std::uint32_t atlas) {
+      if (at[atlas] == no_record) return;
+      const auto& texel = texels[at[atlas]];
+      if (Lamps::is_lamp(emission_of(texel), brightest) == lamps)
+        records.push_back(record_of(scene, size, texel, surfaces[texel.at.triangle]));
+    });
   return records;
 }
 
-std::vector<glm::vec3> emissions_of(const std::vector<TexelRecord>& records) {
-  std::vector<glm::vec3> emissions;
-  for (const auto& record : records) emissions.push_back(record.emission);
-  return emissions;
+Lamps lamps_of(const std::vector<TexelRecord>& records) {
+  float brightest = 0;
+  for (const auto& record : records) brightest = std::max(brightest, Lamps::strength(record.emission));
+  std::vector<glm::vec3> emission;
+  for (const auto& record : records) {
+    if (!Lamps::is_lamp(record.emission, brightest)) break;
+    emission.push_back(record.emission);
+  }
+  return {std::move(emission), brightest};
 }
 
 // The nearest of `own` around an atlas texel that has none, within the gutter's width.
@@ -119,7 +131,7 @@ std::vector<std::uint32_t> sources_of(const std::vector<TexelRecord>& records, s
 TexelRecords::TexelRecords(const scene::Scene& scene, std::uint32_t size)
     : size_(size),
       records_(records_of(scene, size)),
-      lamps_(emissions_of(records_)),
+      lamps_(lamps_of(records_)),
       source_(sources_of(records_, size)) {
   for (const auto& record : records_)
     highest_albedo_ = std::max({highest_albedo_, record.albedo.r, record.albedo.g, record.albedo.b});
