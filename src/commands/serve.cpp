@@ -1,7 +1,6 @@
 // lichtveld serve: the render server of a room.
 #include <spdlog/spdlog.h>
 
-#include <algorithm>
 #include <chrono>
 #include <fstream>
 #include <stop_token>
@@ -120,11 +119,11 @@ void serve(ServeOptions options) {
                                            [&] { return stop.stop_requested(); });
   scene::check_atlas(scene, options.settings.size);
 
-  auto rest = room::places_at_rest(scene);
-  rest.resize(std::min(rest.size(), cubes_of_players));
+  const auto rest = room::places_at_rest(scene, cubes_of_players);
   std::unique_ptr<stream::Server> server;
   room::Room room(scene, engine.make(device, scene, options.settings),
                   {.rate = options.rate,
+                   .bodies = cubes_of_players,
                    .publish = [&](const room::Map& map) { server->publish(encoded(map)); },
                    .ended = [&] { return !server->refused().empty(); },
                    .around_update = [&](const std::function<void()>& work) { update(capture, work); }});

@@ -25,9 +25,10 @@ glm::vec3 unit(Direction direction) {
 
 }  // namespace
 
-Places places_at_rest(const scene::Scene& scene) {
+Places places_at_rest(const scene::Scene& scene, std::size_t most) {
   Places places;
-  for (std::size_t body = 1; body < scene.bodies.size(); ++body) places.push_back(scene.bodies[body].place);
+  for (std::size_t body = 1; body < scene.bodies.size() && places.size() < most; ++body)
+    places.push_back(scene.bodies[body].place);
   return places;
 }
 

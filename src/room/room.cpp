@@ -39,7 +39,7 @@ class Room::Pipeline {
       : scene_(scene),
         options_(checked(std::move(options))),
         light_(std::move(light)),
-        places_(places_at_rest(scene)),
+        places_(places_at_rest(scene, options_.bodies)),
         sender_(options_.publish, log_) {}
 
   void begin() {

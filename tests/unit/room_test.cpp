@@ -139,6 +139,15 @@ TEST_F(LiveRoom, BodiesAreAList) {
   EXPECT_THROW(offsets_of(scene_, Places(3)), std::invalid_argument);
 }
 
+// What is not among a room's bodies is not told of, and does not move.
+TEST_F(LiveRoom, ListsTheBodiesThatItWasGiven) {
+  Audience audience;
+  Room room(scene_, light(), {.bodies = 1, .publish = [&](Map map) { audience.take(std::move(map)); }});
+  room.begin();
+  EXPECT_EQ(audience.wait_for(1).places, places_at_rest(scene_, 1));
+  EXPECT_EQ(places_at_rest(scene_, 1).size(), 1u);
+}
+
 TEST_F(LiveRoom, AStepIsAStepLongAndEndsAtAWall) {
   auto places = places_at_rest(scene_);
   const float step = scene::step_length(scene_);

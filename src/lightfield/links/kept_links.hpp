@@ -48,7 +48,6 @@ class KeptLinks {
     bool received = false;  // RouteLinks::read_receivers, since the last move
   };
 
-  void place(gpu::Frame& frame, const scene::Offsets& to, const Moves& moves);
   Patch whole_patch(std::uint32_t pair) const;
   std::vector<Patch> whole_patches() const;
   std::vector<Patch> changed_patches(const Moves::Move& move) const;

@@ -1,7 +1,9 @@
 // Where the bodies of a room are, and where a step leads.
 #pragma once
 
+#include <cstddef>
 #include <glm/glm.hpp>
+#include <limits>
 #include <vector>
 
 #include "lichtveld/scene/scene.hpp"
@@ -15,7 +17,8 @@ using Places = std::vector<glm::vec3>;
 // Along the scene's x (left, right) and y (down, up).
 enum class Direction { left, right, down, up };
 
-Places places_at_rest(const scene::Scene& scene);
+// Of the first `most` movable bodies.
+Places places_at_rest(const scene::Scene& scene, std::size_t most = std::numeric_limits<std::size_t>::max());
 
 // Throws std::invalid_argument for more places than there are movable bodies.
 scene::Offsets offsets_of(const scene::Scene& scene, const Places& places);

@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <functional>
+#include <limits>
 #include <memory>
 
 #include "lichtveld/lightfield/light_field.hpp"
@@ -21,6 +22,8 @@ struct Map {
 
 struct Options {
   double rate = 30;  // most maps a second, above 0
+  // Of the scene's movable bodies the first so many are listed in maps and placed; others stand at rest.
+  std::size_t bodies = std::numeric_limits<std::size_t>::max();
   // Where maps go, one after the other, on a thread of the room's own, while the next one is computed: to be
   // encoded and sent. What it throws ends run().
   std::function<void(Map map)> publish;
