@@ -16,7 +16,7 @@ export const defaultLimits = Object.freeze({
   maxMidLength: 16,
   /** Players and watchers that a role message may name. */
   maxPeople: 100_000,
-  /** Stages, passes and counts that the render server may report: it has about ten of each. */
+  /** Stages, passes and counts that the render server may report: it has up to twenty of each. */
   maxWorkEntries: 32,
 
   /** Messages of a client: a joining browser sends fewer than 40 in one go, then none. */
