@@ -102,6 +102,15 @@ struct Closing {
   }
 };
 
+// A room goes on without its capture.
+void update_room(std::optional<gpu::Capture>& capture, const std::function<void()>& work) {
+  try {
+    update(capture, work);
+  } catch (const gpu::CaptureError& error) {
+    spdlog::error("{}", error.what());
+  }
+}
+
 void serve(ServeOptions options) {
   if (!(options.rate > 0 && options.rate <= 1000))
     throw UsageError("--rate: maps a second, above 0 and up to 1000");
@@ -126,7 +135,7 @@ void serve(ServeOptions options) {
                    .bodies = cubes_of_players,
                    .publish = [&](const room::Map& map) { server->publish(encoded(map)); },
                    .ended = [&] { return !server->refused().empty(); },
-                   .around_update = [&](const std::function<void()>& work) { update(capture, work); }});
+                   .around_update = [&](const std::function<void()>& work) { update_room(capture, work); }});
   const Closing closing{room, server};
   const std::stop_callback on_stop(stop.get_token(), [&] { room.stop(); });
   server = std::make_unique<stream::Server>(stream::ServerOptions{

@@ -10,6 +10,7 @@
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
+#include <fstream>
 #include <string>
 #endif
 
@@ -52,6 +53,18 @@ fs::path newest(const Api& api) {
   return name.c_str();  // the length counts the zero at its end
 }
 
+// RenderDoc does not say when a disk was full before all was written: then one more byte does not fit either.
+bool has_room(const fs::path& file) {
+  std::error_code error;
+  const auto size = fs::file_size(file, error);
+  std::ofstream more(file, std::ios::binary | std::ios::app);
+  more.put(0).flush();
+  const bool fits = !error && more.good();
+  more.close();
+  fs::resize_file(file, size, error);
+  return fits && !error;
+}
+
 }  // namespace
 
 Capture::Capture(fs::path file, std::uint32_t skipped)
@@ -72,17 +85,18 @@ void Capture::around(const std::function<void()>& work) {
   }
   const auto& api = *static_cast<Api*>(api_);
   api.StartFrameCapture(nullptr, nullptr);
-  if (api.IsFrameCapturing() != 1)
-    throw CaptureError(
-        "--capture: RenderDoc does not see the Vulkan device; is its layer installed "
-        "(vulkan/implicit_layer.d/renderdoc_capture.json, on Debian of the package librenderdoc)?");
+  const bool captures = api.IsFrameCapturing() == 1;
+  ++done_;
   try {
     work();
   } catch (...) {
-    api.DiscardFrameCapture(nullptr, nullptr);
+    if (captures) api.DiscardFrameCapture(nullptr, nullptr);
     throw;
   }
-  ++done_;
+  if (!captures)
+    throw CaptureError(
+        "--capture: RenderDoc does not see the Vulkan device; is its layer installed "
+        "(vulkan/implicit_layer.d/renderdoc_capture.json, on Debian of the package librenderdoc)?");
   save();
 }
 
@@ -91,15 +105,24 @@ void Capture::save() const {
   const bool captured = api.EndFrameCapture(nullptr, nullptr) == 1;
   const auto made = captured ? newest(api) : fs::path();
   std::error_code error;
-  if (!made.empty()) fs::rename(made, file_, error);
-  if (!made.empty() && !error) {
-    spdlog::info("{}: captured; open it with qrenderdoc", file_.string());
-    return;
+  if (!made.empty() && has_room(made)) {
+    fs::rename(made, file_, error);
+    if (!error) {
+      spdlog::info("{}: captured; open it with qrenderdoc", file_.string());
+      return;
+    }
   }
-  std::error_code ignored;
-  if (!made.empty()) fs::remove(made, ignored);
+  remove_leftovers();
   throw CaptureError(file_.string() + " cannot be written" + (error ? ": " + error.message() : "") +
                      "; is there room, and may you write there?");
+}
+
+// What RenderDoc has begun is named by its template and more.
+void Capture::remove_leftovers() const {
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(template_.parent_path(), ignored))
+    if (entry.path().filename().string().starts_with(template_.filename().string()))
+      fs::remove(entry.path(), ignored);
 }
 
 #else
@@ -114,6 +137,9 @@ Capture::Capture(std::filesystem::path file, std::uint32_t skipped)
 void Capture::around(const std::function<void()>& work) {
   work();
 }
+
+void Capture::save() const {}
+void Capture::remove_leftovers() const {}
 
 #endif
 

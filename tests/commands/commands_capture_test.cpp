@@ -126,6 +126,14 @@ TEST_F(CaptureWithRenderDoc, LiveShowsTheLastMove) {
   EXPECT_THAT(labels(moves + "--capture-after 0"), Not(HasSubstr("direct light")));
 }
 
+// RenderDoc itself takes such a capture for a good one.
+TEST_F(CaptureWithRenderDoc, OnAFullDiskLeavesNothing) {
+  const auto ran = bake("--capture " + path("c.rdc"), "trap '' XFSZ; ulimit -f 20;");
+  EXPECT_EQ(ran.status, 1) << ran.output;
+  EXPECT_THAT(ran.output, HasSubstr("c.rdc cannot be written"));
+  EXPECT_THAT(files(), IsEmpty());
+}
+
 TEST_F(Capture, WithoutRenderDocItSaysWhatToInstall) {
   const auto ran = bake("--capture " + path("c.rdc"), "LICHTVELD_RENDERDOC=/nonexistent/librenderdoc.so");
   EXPECT_EQ(ran.status, 1) << ran.output;

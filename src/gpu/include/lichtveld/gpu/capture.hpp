@@ -16,13 +16,13 @@ struct CaptureError : std::runtime_error {
 
 class Capture {
  public:
-  // Of one piece of work, after `skipped` others. Make it before the Device, which RenderDoc has to see made,
-  // and before other threads. Throws CaptureError if RenderDoc cannot be loaded; LICHTVELD_RENDERDOC names
-  // another library than the system's.
+  // Of one piece of work, after `skipped` others. Make it before the Device, which RenderDoc has to see made.
+  // Its threads inherit the signals that are blocked now. Throws CaptureError if RenderDoc cannot be loaded;
+  // LICHTVELD_RENDERDOC names another library than the system's.
   Capture(std::filesystem::path file, std::uint32_t skipped);
 
   // Does a piece of work that ends with the device at rest, and captures it if it is its turn: then the file is
-  // there, whole, or it throws CaptureError. If the work throws, nothing is left behind.
+  // there, whole, or it throws CaptureError when the work is done. If the work throws, nothing is left behind.
   void around(const std::function<void()>& work);
 
   const std::filesystem::path& file() const { return file_; }
@@ -31,6 +31,7 @@ class Capture {
 
  private:
   void save() const;
+  void remove_leftovers() const;
 
   std::filesystem::path file_;
   std::filesystem::path template_;  // RenderDoc adds to it what makes a file's name
