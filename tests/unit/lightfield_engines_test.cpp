@@ -3,10 +3,10 @@
 
 #include "device_for_tests.hpp"
 #include "known_scenes.hpp"
-#include "lichtveld/gpu/transfer.hpp"
 #include "lichtveld/lightfield/presenter.hpp"
 #include "lichtveld/reference/error.hpp"
 #include "light_fields.hpp"
+#include "passes/light_map.hpp"
 
 namespace lichtveld::lightfield {
 namespace {
@@ -118,10 +118,8 @@ using TexelViews = WithDevice;
 TEST_F(TexelViews, BecomeEachOther) {
   std::vector<glm::vec4> values;
   for (int texel = 0; texel < 16 * 16; ++texel) values.emplace_back(texel, -texel, 0.5f * texel, 1);
-  const gpu::Image first(device(), "test/first", {.width = 16, .height = 16}, vk::Format::eR32G32B32A32Sfloat,
-                         vk::ImageUsageFlagBits::eTransferDst | vk::ImageUsageFlagBits::eTransferSrc);
-  const gpu::Image second(device(), "test/second", {.width = 16, .height = 16}, vk::Format::eR32G32B32A32Sfloat,
-                          vk::ImageUsageFlagBits::eTransferDst | vk::ImageUsageFlagBits::eTransferSrc);
+  const auto first = atlas_image(device(), "test first", 16, vk::Format::eR32G32B32A32Sfloat),
+             second = atlas_image(device(), "test second", 16, vk::Format::eR32G32B32A32Sfloat);
   const TexelView on_host(values, 16);
   on_host.copy_to(device(), first);
   const TexelView on_device(device(), first);
