@@ -18,7 +18,7 @@ std::string cell(double value, const char* format = "{:.6g}") {
 
 std::string name_of_method(const Row& row) {
   if (row.method == reference_method) return "path tracing";
-  if (row.method == links_method) return row.method;
+  if (row.method != thesis_method) return row.method;  // has one way to find layers
   return fmt::format("{}, {} ({})", row.method, name_of(row.settings.thesis.abuffer),
                      name_of(row.settings.thesis.sort));
 }
