@@ -71,7 +71,8 @@ void check(const CaptureOptions& options) {
 
 std::optional<gpu::Capture> make_capture(const CaptureOptions& options, std::uint32_t after_by_default) {
   if (options.file.empty()) return {};
-  return std::make_optional<gpu::Capture>(options.file, options.after.value_or(after_by_default));
+  return std::make_optional<gpu::Capture>(files::target_of(options.file),
+                                          options.after.value_or(after_by_default));
 }
 
 void update(std::optional<gpu::Capture>& capture, const std::function<void()>& work) {

@@ -126,6 +126,16 @@ TEST_F(CaptureWithRenderDoc, LiveShowsTheLastMove) {
   EXPECT_THAT(labels(moves + "--capture-after 0"), Not(HasSubstr("direct light")));
 }
 
+// As with every output, a link stays one.
+TEST_F(CaptureWithRenderDoc, ALinksTargetIsWritten) {
+  std::filesystem::create_symlink("real.rdc", path("c.rdc"));
+  const auto ran = bake("--capture " + path("c.rdc"));
+  EXPECT_EQ(ran.status, 0) << ran.output;
+  EXPECT_TRUE(std::filesystem::is_symlink(path("c.rdc")));
+  EXPECT_EQ(passes(path("real.rdc")).status, 0);
+  EXPECT_THAT(files(), UnorderedElementsAre("E.exr", "c.rdc", "real.rdc"));
+}
+
 // RenderDoc itself takes such a capture for a good one.
 TEST_F(CaptureWithRenderDoc, OnAFullDiskLeavesNothing) {
   const auto ran = bake("--capture " + path("c.rdc"), "trap '' XFSZ; ulimit -f 20;");
