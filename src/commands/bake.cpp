@@ -42,8 +42,10 @@ void check_outputs(const BakeOptions& options) {
   if (!options.report.empty()) files::check_place(options.report);
   check(options.capture);
   std::vector<files::NamedFile> files = {{"the scene", options.scene}};
-  for (const auto& [name, file] :
-       {std::pair{"--out", options.out}, {"--png", options.png}, {"--report", options.report}, {"--capture", options.capture.file}})
+  for (const auto& [name, file] : {std::pair{"--out", options.out},
+                                   {"--png", options.png},
+                                   {"--report", options.report},
+                                   {"--capture", options.capture.file}})
     if (!file.empty()) files.push_back({name, file});
   files::check_distinct(files);
   if (options.dump.empty()) return;

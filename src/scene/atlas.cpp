@@ -80,7 +80,8 @@ std::uint32_t check_atlas(const Scene& scene, std::uint32_t size) {
   // within this distance of an edge is shared by nobody.
   const double margin = 1e-3 / size + 2.5e-7;
   constexpr std::uint32_t no_owner = ~0u;
-  std::vector<std::uint32_t> owner(std::size_t{size} * size, no_owner);  // surface whose triangle holds the centre
+  std::vector<std::uint32_t> owner(std::size_t{size} * size,
+                                   no_owner);  // surface whose triangle holds the centre
   Overlaps overlaps;
   std::uint64_t shared = 0;
   // Enough to describe the damage; a hostile file could stack millions of charts on each other.
