@@ -1,6 +1,7 @@
 // lichtveld serve: the render server of a room.
 #include <spdlog/spdlog.h>
 
+#include <charconv>
 #include <chrono>
 #include <fstream>
 #include <stop_token>
@@ -28,7 +29,8 @@ constexpr auto budget_a_map = 33ms;
 constexpr std::size_t cubes_of_players = 2;  // as stream's protocol has it
 
 struct ServeOptions {
-  std::string scene, signaling, token_file, bind;
+  std::string scene, signaling, token_file, bind, public_ip;
+  std::string udp_port;  // PORT or FIRST-LAST; empty: any
   double rate = 30;
   std::string method = "links";
   bool chosen_quality = false;
@@ -43,6 +45,22 @@ std::string read_token(const std::string& file) {
   std::string token;
   if (!in || !(in >> token)) throw UsageError("--token-file " + file + ": it cannot be read or is empty");
   return token;
+}
+
+std::pair<unsigned short, unsigned short> read_udp_ports(const std::string& text) {
+  const auto number = [&](std::string_view digits) {
+    unsigned short port = 0;
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), port);
+    if (error != std::errc() || end != digits.data() + digits.size() || port == 0)
+      throw UsageError("--udp-port " + text + ": give a port from 1 to 65535, or two as in 40000-40100");
+    return port;
+  };
+  const std::string_view view = text;
+  const auto dash = view.find('-');
+  const auto first = number(view.substr(0, dash));
+  const auto last = dash == std::string_view::npos ? first : number(view.substr(dash + 1));
+  if (first > last) throw UsageError("--udp-port " + text + ": the first port has to come before the last");
+  return {first, last};
 }
 
 stream::Place seen_from_front(const glm::vec3& place) {
@@ -116,6 +134,8 @@ void serve(ServeOptions options) {
     throw UsageError("--rate: maps a second, above 0 and up to 1000");
   lightfield::check(options.settings);
   check(options.capture);
+  const auto ports = options.udp_port.empty() ? std::pair<unsigned short, unsigned short>{1024, 65535}
+                                              : read_udp_ports(options.udp_port);
   std::stop_source stop;
   const StopSignals signals([&] { stop.request_stop(); });
   const auto scene = scene::load(options.scene);
@@ -143,6 +163,9 @@ void serve(ServeOptions options) {
       .token = token,
       .scene_hash = files::sha256_of_file(options.scene),
       .bind_address = options.bind,
+      .first_udp_port = ports.first,
+      .last_udp_port = ports.second,
+      .public_address = options.public_ip,
       .places = seen_from_front(rest),
       .mover =
           [&](std::size_t cube, const std::vector<stream::Place>& places, stream::Move move) {
@@ -175,6 +198,13 @@ void add_serve(CLI::App& application) {
   command->add_option("--token-file", options->token_file, "A file with the token that signaling knows")
       ->required();
   command->add_option("--bind", options->bind, "The address that WebRTC binds to (default: every address)");
+  command->add_option(
+      "--udp-port", options->udp_port,
+      "The UDP port that all clients share, or a range such as 40000-40100 of which each takes one "
+      "(default: any)");
+  command->add_option(
+      "--public-ip", options->public_ip,
+      "The address at which this machine is reached from outside, where a 1:1 NAT stands before it");
   command->add_option("--rate", options->rate, "Most light maps a second")->capture_default_str();
   add_quality_options(*command, options->settings);
   command->get_option("--size")->default_str("the finest that this machine renews 15 times a second");

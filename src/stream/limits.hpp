@@ -36,8 +36,20 @@ inline constexpr std::size_t queued_messages = 64;
 // Offers that the room answers: each makes a certificate and sockets.
 inline constexpr double offers_per_second = 10, offers_burst = 64;
 
-// Bytes; a browser's offer of one data channel has about 700, a candidate about 120.
-inline constexpr std::size_t description = 16 * 1024, candidate = 512, mid = 32, peer_id = 128;
+// Bytes; a browser's offer of one data channel has about 700, a candidate about 120, a session's secret 22.
+inline constexpr std::size_t description = 16 * 1024, candidate = 512, mid = 32, peer_id = 128, session = 64,
+                             name = 160;
+
+// STUN and TURN servers that a peer is given, and bytes of an address, a user's name, a credential. More only
+// make the search for a way longer.
+inline constexpr std::size_t ice_servers = 8, ice_server_text = 256;
+
+// A peer that gives up after this long without a channel had no way to us; sooner it has only been closed.
+inline constexpr auto patience = 5s;
+
+// Roles are told together this long after the first change: when many leave in one moment each peer is told
+// once.
+inline constexpr auto roles_delay = 50ms;
 
 // Candidates of one peer, both ways; a browser with many network interfaces has about 20.
 inline constexpr std::size_t candidates = 64;
@@ -46,8 +58,9 @@ inline constexpr std::size_t candidates = 64;
 // ends.
 inline constexpr std::size_t signaling_message = 32 * 1024, signaling_read = 1024 * 1024;
 
-// Messages to signaling that wait for a slow socket.
-inline constexpr std::size_t signaling_queue = 512;
+// Bytes to signaling that wait for a slow socket: 64 answers with their candidates are some 300 KiB. Roles do
+// not count, they wait until there is room.
+inline constexpr std::size_t signaling_queue = 4 * 1024 * 1024, signaling_queue_of_roles = 64 * 1024;
 
 // Log lines about strangers' mistakes.
 inline constexpr double log_lines_per_second = 1, log_lines_burst = 10;

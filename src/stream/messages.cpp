@@ -28,6 +28,31 @@ std::optional<std::string> id_of(const json& message) {
   return id;
 }
 
+// A secret that we may have made; nothing else is worth a look.
+std::optional<std::string> session_of(const json& message) {
+  return text_of(message, "session", limits::session);
+}
+
+// What there is of it and within the limits: a server that we cannot read is one that we do without.
+std::vector<IceServer> ice_servers_of(const json& message) {
+  std::vector<IceServer> servers;
+  const auto list = message.find("iceServers");
+  if (list == message.end() || !list->is_array()) return servers;
+  for (const json& entry : *list) {
+    if (!entry.is_object()) continue;
+    const auto urls = entry.find("urls");
+    if (urls == entry.end() || !urls->is_array()) continue;
+    for (const json& url : *urls) {
+      if (servers.size() >= limits::ice_servers) return servers;
+      if (!url.is_string() || url.get_ref<const std::string&>().size() > limits::ice_server_text) continue;
+      servers.push_back({url.get<std::string>(),
+                         text_of(entry, "username", limits::ice_server_text).value_or(""),
+                         text_of(entry, "credential", limits::ice_server_text).value_or("")});
+    }
+  }
+  return servers;
+}
+
 // Replaces what is not UTF-8 rather than throw: the text comes from the WebRTC library.
 std::string dump(const json& message) {
   return message.dump(-1, ' ', false, json::error_handler_t::replace);
@@ -50,19 +75,30 @@ std::optional<Signal> parse_signal(std::string_view text) {
   const auto id = id_of(message);
   if (!type || !id) return std::nullopt;
 
-  if (*type == "welcome") return Signal{Signal::Type::welcome, *id, {}, {}};
-  if (*type == "gone") return Signal{Signal::Type::gone, *id, {}, {}};
+  if (*type == "welcome")
+    return Signal{.type = Signal::Type::welcome, .id = *id, .ice_servers = ice_servers_of(message)};
+  if (*type == "gone") return Signal{.type = Signal::Type::gone, .id = *id};
   if (*type == "offer") {
     auto sdp = text_of(message, "description", limits::description);
     if (!sdp) return std::nullopt;
-    return Signal{Signal::Type::offer, *id, std::move(*sdp), {}};
+    return Signal{.type = Signal::Type::offer,
+                  .id = *id,
+                  .body = std::move(*sdp),
+                  .session = session_of(message).value_or(""),
+                  .name = text_of(message, "name", limits::name).value_or(""),
+                  .watches = message.value("seat", json()) == "watcher"};
+  }
+  if (*type == "rejoin") {
+    auto session = session_of(message);
+    if (!session) return std::nullopt;
+    return Signal{.type = Signal::Type::rejoin, .id = *id, .session = std::move(*session)};
   }
   if (*type == "candidate") {
     // An empty line says that the client has no more candidates.
     auto line = text_of(message, "candidate", limits::candidate, true);
     auto mid = text_of(message, "mid", limits::mid);
     if (!line || !mid) return std::nullopt;
-    return Signal{Signal::Type::candidate, *id, std::move(*line), std::move(*mid)};
+    return Signal{.type = Signal::Type::candidate, .id = *id, .body = std::move(*line), .mid = std::move(*mid)};
   }
   return std::nullopt;
 }
@@ -75,12 +111,13 @@ std::string candidate_signal(const std::string& id, const std::string& line, con
   return dump({{"id", json::parse(id)}, {"type", "candidate"}, {"candidate", line}, {"mid", mid}});
 }
 
-std::string role_signal(const std::string& id, const Role& role) {
+std::string role_signal(const std::string& id, const Role& role, const std::string& session) {
   return dump({{"id", json::parse(id)},
                {"type", "role"},
                {"cube", role.cube},
                {"players", role.players},
-               {"watchers", role.watchers}});
+               {"watchers", role.watchers},
+               {"session", session}});
 }
 
 std::string work_signal(const Work& work) {

@@ -34,10 +34,32 @@ void set_up_library() {
   });
 }
 
-rtc::Configuration configuration(const std::string& bind_address) {
+// Nothing for what the library does not speak (TURN over TCP or TLS) or cannot read.
+std::optional<rtc::IceServer> usable(const IceServer& server, bool share_port) {
+  try {
+    rtc::IceServer found(server.url);
+    if (found.type == rtc::IceServer::Type::Turn) {
+      // Peers that share a port would share one allocation, too, which TURN does not know.
+      if (share_port || found.relayType != rtc::IceServer::RelayType::TurnUdp) return std::nullopt;
+      found.username = server.username;
+      found.password = server.credential;
+    }
+    return found;
+  } catch (const std::exception& error) {
+    spdlog::warn("ICE server '{}' cannot be used: {}", server.url, error.what());
+    return std::nullopt;
+  }
+}
+
+rtc::Configuration configuration(const IceOptions& ice) {
   set_up_library();
   rtc::Configuration config;
-  if (!bind_address.empty()) config.bindAddress = bind_address;
+  if (!ice.bind_address.empty()) config.bindAddress = ice.bind_address;
+  config.portRangeBegin = ice.ports.first;
+  config.portRangeEnd = ice.ports.last;
+  config.enableIceUdpMux = ice.ports.one();
+  for (const IceServer& server : ice.servers)
+    if (auto found = usable(server, ice.ports.one())) config.iceServers.push_back(std::move(*found));
   // What a client may send in one message; it also bounds what is assembled in memory.
   config.maxMessageSize = 64 * 1024;
   return config;
@@ -55,26 +77,39 @@ std::string_view unfit(const rtc::DataChannel& channel) {
 }
 
 // Whether a candidate may be used: an address (not a name) that UDP reaches.
-bool usable(rtc::Candidate& candidate) {
+bool reachable(rtc::Candidate& candidate) {
   return candidate.transportType() == rtc::Candidate::TransportType::Udp &&
          candidate.resolve(rtc::Candidate::ResolveMode::Simple);
 }
 
+std::string kind(const rtc::Candidate& candidate) {
+  switch (candidate.type()) {
+    case rtc::Candidate::Type::Host:
+      return "host";
+    case rtc::Candidate::Type::ServerReflexive:
+      return "srflx";
+    case rtc::Candidate::Type::PeerReflexive:
+      return "prflx";
+    case rtc::Candidate::Type::Relayed:
+      return "relay";
+    case rtc::Candidate::Type::Unknown:
+      break;
+  }
+  return "unknown";
+}
+
 }  // namespace
 
-Peer::Peer(PeerNumber number, boost::asio::io_context& io, PeerListener& listener,
-           const std::string& bind_address)
+Peer::Peer(PeerNumber number, boost::asio::io_context& io, PeerListener& listener, const IceOptions& ice)
     : number_(number),
       listener_(listener),
       mailbox_(std::make_shared<Mailbox>(io, *this)),
-      connection_(configuration(bind_address)) {
+      connection_(configuration(ice)) {
   connection_.onLocalDescription([mailbox = mailbox_](const rtc::Description& description) {
     mailbox->post([sdp = std::string(description)](Peer& peer) { peer.listener_.on_answer(peer, sdp); });
   });
   connection_.onLocalCandidate([mailbox = mailbox_](const rtc::Candidate& candidate) {
-    mailbox->post_bounded([line = candidate.candidate(), mid = candidate.mid()](Peer& peer) {
-      peer.listener_.on_candidate(peer, line, mid);
-    });
+    mailbox->post_bounded([candidate](Peer& peer) { peer.listener_.on_candidate(peer, candidate); });
   });
   connection_.onStateChange([mailbox = mailbox_](rtc::PeerConnection::State state) {
     using State = rtc::PeerConnection::State;
@@ -142,14 +177,32 @@ void Peer::offer(const std::string& sdp) {
   rtc::Description description(sdp, rtc::Description::Type::Offer);
   if (!description.hasApplication() || description.mediaCount() != 1)
     throw std::invalid_argument("the offer is not of one data channel");
-  for (rtc::Candidate& candidate : description.extractCandidates())
-    if (usable(candidate)) description.addCandidate(candidate);
+  for (rtc::Candidate& candidate : description.extractCandidates()) {
+    if (!reachable(candidate)) continue;
+    description.addCandidate(candidate);
+    has_candidates_ = true;
+  }
   connection_.setRemoteDescription(std::move(description));
 }
 
 void Peer::add_candidate(const std::string& line, const std::string& mid) {
   rtc::Candidate candidate(line, mid);
-  if (usable(candidate)) connection_.addRemoteCandidate(std::move(candidate));
+  if (!reachable(candidate)) return;
+  connection_.addRemoteCandidate(std::move(candidate));
+  has_candidates_ = true;
+}
+
+std::string Peer::pair() const {
+  rtc::Candidate ours, theirs;
+  if (!connection_.getSelectedCandidatePair(&ours, &theirs)) return {};
+  return kind(ours) + "_" + kind(theirs);
+}
+
+std::string_view Peer::why_not_open() const {
+  using State = rtc::PeerConnection::IceState;
+  const State state = connection_.iceState();
+  if (state == State::Connected || state == State::Completed) return "no_channel";
+  return has_candidates_ ? "no_pair" : "no_candidates";
 }
 
 void Peer::pump() {

@@ -10,6 +10,7 @@
 #include <string>
 #include <string_view>
 
+#include "ice.hpp"
 #include "lichtveld/stream/session.hpp"
 #include "outbox.hpp"
 
@@ -21,7 +22,7 @@ class Peer;
 class PeerListener {
  public:
   virtual void on_answer(Peer& peer, const std::string& sdp) = 0;
-  virtual void on_candidate(Peer& peer, const std::string& line, const std::string& mid) = 0;
+  virtual void on_candidate(Peer& peer, const rtc::Candidate& candidate) = 0;
   virtual void on_open(Peer& peer) = 0;
   virtual void on_closed(Peer& peer) = 0;
   virtual void on_text(Peer& peer, std::string_view text) = 0;
@@ -34,8 +35,7 @@ class PeerListener {
 
 class Peer {
  public:
-  // `bind_address` empty: every address.
-  Peer(PeerNumber number, boost::asio::io_context& io, PeerListener& listener, const std::string& bind_address);
+  Peer(PeerNumber number, boost::asio::io_context& io, PeerListener& listener, const IceOptions& ice);
   ~Peer();  // closes the connection; no call to the listener follows
   Peer(const Peer&) = delete;
   Peer& operator=(const Peer&) = delete;
@@ -50,6 +50,15 @@ class Peer {
   void add_candidate(const std::string& line, const std::string& mid);
 
   bool is_open() const { return outbox_.has_value(); }
+
+  // The kinds of the two addresses that found each other, ours first: host, srflx, prflx or relay, as in
+  // "host_srflx". Empty before any did.
+  std::string pair() const;
+
+  // Why its channel has not opened: "no_candidates" (the client named no address that could be tried),
+  // "no_pair" (none answered), "no_channel".
+  std::string_view why_not_open() const;
+
   std::chrono::steady_clock::time_point created() const { return created_; }
 
   // Only while open. What cannot be sent because the channel has just closed is followed by on_closed.
@@ -76,7 +85,8 @@ class Peer {
   PeerListener& listener_;
   std::chrono::steady_clock::time_point created_ = std::chrono::steady_clock::now();
   std::shared_ptr<Mailbox> mailbox_;
-  rtc::PeerConnection connection_;
+  bool has_candidates_ = false;  // of the client, that can be tried
+  mutable rtc::PeerConnection connection_;
   std::shared_ptr<rtc::DataChannel> channel_;
   std::optional<Outbox> outbox_;
 };

@@ -4,6 +4,7 @@
 
 #include <boost/asio/post.hpp>
 #include <stdexcept>
+#include <utility>
 
 #include "lichtveld/stream/protocol.hpp"
 
@@ -23,6 +24,8 @@ Server::Room::Room(ServerOptions options)
                         const std::lock_guard lock(mutex_);
                         refused_ = std::move(why);
                       }}) {
+  ice_.bind_address = options_.bind_address;
+  ice_.ports = {options_.first_udp_port, options_.last_udp_port};
   tick();
   thread_ = std::jthread([this] { run(); });
 }
@@ -81,7 +84,10 @@ void Server::Room::tick() {
     const auto guest = it++;
     Peer& peer = *guest->second.peer;
     if (!peer.is_open()) {
-      if (now - peer.created() > limits::open_time) drop(guest, "its channel did not open in time");
+      if (now - peer.created() > limits::open_time) {
+        count_failure(guest->second);
+        drop(guest, "its channel did not open in time");
+      }
       continue;
     }
     peer.send_places(places);
@@ -101,25 +107,47 @@ void Server::Room::report() {
                                     {"maps_skipped", now.maps_skipped},
                                     {"moves", now.moves},
                                     {"moves_blocked", now.moves_blocked},
-                                    {"messages_refused", now.messages_refused}})
+                                    {"messages_refused", now.messages_refused},
+                                    {"claims_refused", now.claims_refused}})
     work.counts.push_back({name, value});
+  for (const auto& [kinds, value] : now.pairs) work.counts.push_back({"pair_" + kinds, value});
+  for (const auto& [cause, value] : now.connect_failures)
+    work.counts.push_back({"connect_failed_" + cause, value});
   if (work == reported_) return;
   reported_ = work;
   signaling_.send(work_signal(work));
 }
 
 void Server::Room::on_open(Peer& peer) {
-  session_.join(peer.number());
-  spdlog::info("peer {} joined, {} in the room", peer.number(), session_.size());
+  const auto guest = guests_.find(peer.number());
+  if (guest == guests_.end()) return;
+  const auto joined = session_.join(peer.number(), guest->second.entry, std::chrono::steady_clock::now());
+  const std::string pair = peer.pair();
+  count([&](auto& s) {
+    ++s.pairs[pair.empty() ? "unknown" : pair];
+    if (joined.claim_refused) ++s.claims_refused;
+  });
+  if (joined.replaced)
+    if (const auto old = guests_.find(*joined.replaced); old != guests_.end()) drop(old, "it came back anew");
+  spdlog::info("peer {}{} joined by {}, {} in the room", peer.number(),
+               guest->second.name.empty() ? "" : " (" + guest->second.name + ")", pair, session_.size());
   peer.send_places(format_places(session_.places()));
   if (newest_) peer.send_map(newest_);
   collect(peer);
-  tell_roles();
+  roles_changed();
 }
 
 void Server::Room::on_closed(Peer& peer) {
   const auto guest = guests_.find(peer.number());
-  if (guest != guests_.end()) drop(guest, "it closed");
+  if (guest == guests_.end()) return;
+  count_failure(guest->second);
+  drop(guest, "it closed");
+}
+
+void Server::Room::count_failure(const Guest& guest) {
+  if (guest.peer->is_open()) return;
+  const std::string cause(guest.peer->why_not_open());
+  count([&](auto& s) { ++s.connect_failures[cause]; });
 }
 
 void Server::Room::on_text(Peer& peer, std::string_view text) {
@@ -153,21 +181,32 @@ void Server::Room::drop(Guests::iterator guest, std::string_view why) {
   // Later, as this may be called from within the peer.
   asio::post(io_, [peer = std::move(guest->second.peer)] {});
   guests_.erase(guest);
-  session_.leave(number);
-  tell_roles();
+  session_.leave(number, std::chrono::steady_clock::now());
+  roles_changed();
 }
 
-void Server::Room::tell_roles() {
+void Server::Room::roles_changed() {
   count([&](auto& s) {
     s.peers = static_cast<std::uint32_t>(session_.size());
     s.players = static_cast<std::uint32_t>(session_.players());
   });
+  if (std::exchange(roles_due_, true)) return;
+  roles_timer_.expires_after(limits::roles_delay);
+  roles_timer_.async_wait([this](boost::system::error_code error) {
+    roles_due_ = false;
+    if (!error) tell_roles();
+  });
+}
+
+// A role is a state: each peer is told the newest, and one for whom there is no room now gets it the next time.
+void Server::Room::tell_roles() {
   for (auto& [number, guest] : guests_) {
     if (!guest.peer->is_open() || guest.signaling_id.empty()) continue;
     const Role role = session_.role(number);
     if (guest.told == role) continue;
+    if (signaling_.waiting() > limits::signaling_queue_of_roles) return roles_changed();
     guest.told = role;
-    signaling_.send(role_signal(guest.signaling_id, role));
+    signaling_.send(role_signal(guest.signaling_id, role, guest.entry.secret));
   }
 }
 

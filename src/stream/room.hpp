@@ -41,13 +41,15 @@ struct Server::Room final : PeerListener {
     std::unique_ptr<Peer> peer;
     std::string signaling_id;  // as in the present connection to signaling; empty once that is lost
     std::optional<Role> told;
+    Entry entry;
+    std::string name;  // empty: none was told
     std::size_t candidates_in = 0, candidates_out = 0, refusals = 0;
     TokenBucket moves{limits::moves_per_second, limits::moves_burst};
   };
   using Guests = std::map<PeerNumber, Guest>;
 
   void on_answer(Peer& peer, const std::string& sdp) override;
-  void on_candidate(Peer& peer, const std::string& line, const std::string& mid) override;
+  void on_candidate(Peer& peer, const rtc::Candidate& candidate) override;
   void on_open(Peer& peer) override;
   void on_closed(Peer& peer) override;
   void on_text(Peer& peer, std::string_view text) override;
@@ -57,6 +59,7 @@ struct Server::Room final : PeerListener {
   void signal(std::string_view text);
   void offered(const Signal& signal);
   void candidate_came(const Signal& signal);
+  void rejoined(const Signal& signal);
   void client_gone(const Signal& signal);
 
   void run();
@@ -65,6 +68,9 @@ struct Server::Room final : PeerListener {
   void refuse(std::string_view who, std::string_view why);
   void drop(Guests::iterator guest, std::string_view why);
   Guests::iterator find_by_signaling_id(const std::string& id);
+  Guests::iterator find_by_secret(const std::string& secret);  // of those whose channel is open
+  void count_failure(const Guest& guest);
+  void roles_changed();
   void tell_roles();
   void collect(Peer& peer);
   template <typename Change>
@@ -78,7 +84,9 @@ struct Server::Room final : PeerListener {
   std::shared_ptr<const Map> newest_;
   TokenBucket offers_{limits::offers_per_second, limits::offers_burst};
   TokenBucket log_{limits::log_lines_per_second, limits::log_lines_burst};
-  boost::asio::steady_timer tick_{io_};
+  boost::asio::steady_timer tick_{io_}, roles_timer_{io_};
+  bool roles_due_ = false;
+  IceOptions ice_;
   Work reported_;  // in the present connection to signaling
   Signaling signaling_;
 

@@ -28,6 +28,14 @@ ServerOptions checked(ServerOptions options) {
     // The WebRTC library would offer the wildcard itself to clients.
     if (address.is_unspecified()) options.bind_address.clear();
   }
+  if (options.first_udp_port == 0 || options.first_udp_port > options.last_udp_port)
+    throw std::invalid_argument("the UDP ports have to be from 1 to 65535, the first one before the last");
+  if (!options.public_address.empty()) {
+    boost::system::error_code error;
+    boost::asio::ip::make_address(options.public_address, error);
+    if (error)
+      throw std::invalid_argument("the public address '" + options.public_address + "' is no IP address");
+  }
   return options;
 }
 

@@ -30,17 +30,53 @@ std::size_t Session::free_cube() const {
   return 0;
 }
 
-void Session::join(PeerNumber peer) {
-  if (std::any_of(seats_.begin(), seats_.end(), [&](const Seat& seat) { return seat.peer == peer; })) return;
-  seats_.push_back({peer, free_cube()});
+void Session::give_free_cubes() {
+  for (Seat& seat : seats_)
+    if (seat.cube == 0 && seat.may_play) seat.cube = free_cube();
 }
 
-void Session::leave(PeerNumber peer) {
+Joined Session::join(PeerNumber peer, const Entry& entry, TimePoint now) {
+  if (std::any_of(seats_.begin(), seats_.end(), [&](const Seat& seat) { return seat.peer == peer; })) return {};
+  if (!entry.claim.empty()) {
+    const auto own = std::find_if(seats_.begin(), seats_.end(),
+                                  [&](const Seat& seat) { return seat.secret == entry.claim; });
+    if (own != seats_.end()) {
+      own->secret = entry.secret;
+      own->may_play = entry.may_play;
+      if (!own->may_play && std::exchange(own->cube, 0) != 0) give_free_cubes();
+      return {.replaced = std::exchange(own->peer, peer)};
+    }
+  }
+  Seat seat{peer, 0, entry.may_play, entry.secret};
+  const bool taken_back = take_back(seat, entry.claim, now);
+  seats_.push_back(std::move(seat));
+  give_free_cubes();
+  return {.claim_refused = !entry.claim.empty() && !taken_back};
+}
+
+bool Session::take_back(Seat& claimant, const std::string& claim, TimePoint now) {
+  std::erase_if(left_, [&](const Left& left) { return now - left.when > claim_time; });
+  if (claim.empty() || !claimant.may_play) return false;
+  const auto own =
+      std::find_if(left_.begin(), left_.end(), [&](const Left& left) { return left.secret == claim; });
+  if (own == left_.end()) return false;
+  claimant.cube = own->cube;
+  const auto heir =
+      std::find_if(seats_.begin(), seats_.end(), [&](const Seat& seat) { return seat.cube == claimant.cube; });
+  if (heir != seats_.end()) heir->cube = 0;
+  // Who had it in between had it from this one, and gets it back no more.
+  left_.erase(std::remove_if(own, left_.end(), [&](const Left& left) { return left.cube == claimant.cube; }),
+              left_.end());
+  return true;
+}
+
+void Session::leave(PeerNumber peer, TimePoint now) {
   const auto seat = std::find_if(seats_.begin(), seats_.end(), [&](const Seat& s) { return s.peer == peer; });
   if (seat == seats_.end()) return;
+  std::erase_if(left_, [&](const Left& left) { return now - left.when > claim_time; });
+  if (seat->cube != 0 && !seat->secret.empty()) left_.push_back({seat->secret, seat->cube, now});
   seats_.erase(seat);
-  const auto heir = std::find_if(seats_.begin(), seats_.end(), [](const Seat& s) { return s.cube == 0; });
-  if (heir != seats_.end()) heir->cube = free_cube();
+  give_free_cubes();
 }
 
 MoveResult Session::move(PeerNumber peer, Move move) {

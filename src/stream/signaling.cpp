@@ -149,6 +149,7 @@ asio::awaitable<void> Signaling::receive(std::shared_ptr<Socket> socket) {
   const auto start = std::chrono::steady_clock::now();
   socket_ = socket;
   queue_.clear();
+  waiting_ = 0;
   spdlog::info("signaling {}:{} connected", options_.url.host, options_.url.port);
   events_.connected();
 
@@ -166,6 +167,8 @@ asio::awaitable<void> Signaling::receive(std::shared_ptr<Socket> socket) {
   // Ends a write that still waits: it holds the socket and this is the only place that reads from it.
   beast::get_lowest_layer(*socket).close();
   socket_.reset();
+  queue_.clear();
+  waiting_ = 0;
   if (std::chrono::steady_clock::now() - start > settled_time) failures_ = 0;
   spdlog::warn("signaling {}:{} lost ({}); running sessions go on", options_.url.host, options_.url.port,
                error.message());
@@ -174,11 +177,12 @@ asio::awaitable<void> Signaling::receive(std::shared_ptr<Socket> socket) {
 
 void Signaling::send(std::string text) {
   if (!socket_) return;
-  if (queue_.size() >= limits::signaling_queue) {
+  if (waiting_ >= limits::signaling_queue) {
     // Its other end takes nothing: the connection is as good as lost, and the reader will say so.
     beast::get_lowest_layer(*socket_).close();
     return;
   }
+  waiting_ += text.size();
   queue_.push_back(std::move(text));
   if (queue_.size() == 1) write_next();
 }
@@ -191,6 +195,7 @@ void Signaling::write_next() {
                        [this, socket = socket_, text](boost::system::error_code error, std::size_t) {
                          if (error || socket != socket_)
                            return;  // the reader sees the same error and ends the connection
+                         waiting_ -= queue_.front().size();
                          queue_.pop_front();
                          if (!queue_.empty()) write_next();
                        });

@@ -49,6 +49,9 @@ class Signaling {
   // Dropped while there is no connection: what it says is about clients whom signaling has forgotten by then.
   void send(std::string text);
 
+  // Bytes that are still to be taken by the connection; 0 without one.
+  std::size_t waiting() const { return waiting_; }
+
  private:
   using Socket = boost::beast::websocket::stream<boost::beast::tcp_stream>;
   enum class Ending { lost, token_refused, room_taken };
@@ -65,6 +68,7 @@ class Signaling {
   boost::asio::steady_timer retry_;
   std::shared_ptr<Socket> socket_;  // set while connected
   std::deque<std::string> queue_;   // its front is being written
+  std::size_t waiting_ = 0;         // bytes in queue_
   unsigned failures_ = 0;           // in a row
   std::minstd_rand random_{std::random_device{}()};
 };

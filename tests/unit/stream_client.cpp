@@ -53,14 +53,17 @@ Client::Client(Relay& relay, Options options)
                                    through_link = options.through_link](const json& message) {
     if (const auto connection = weak.lock()) inbox->received(message, *connection, through_link);
   });
-  connection_->onLocalDescription([inbox = inbox_](const rtc::Description& description) {
-    inbox->send({{"type", "offer"}, {"description", std::string(description)}});
-  });
-  connection_->onLocalCandidate(
-      [inbox = inbox_, quiet = options.through_link](const rtc::Candidate& candidate) {
-        if (!quiet)
-          inbox->send({{"type", "candidate"}, {"candidate", candidate.candidate()}, {"mid", candidate.mid()}});
+  connection_->onLocalDescription(
+      [inbox = inbox_, with = options.offer_with](const rtc::Description& description) {
+        json message{{"type", "offer"}, {"description", std::string(description)}};
+        message.update(with);
+        inbox->send(message);
       });
+  connection_->onLocalCandidate([inbox = inbox_, quiet = options.through_link || !options.tells_candidates](
+                                    const rtc::Candidate& candidate) {
+    if (!quiet)
+      inbox->send({{"type", "candidate"}, {"candidate", candidate.candidate()}, {"mid", candidate.mid()}});
+  });
 
   rtc::DataChannelInit init;
   init.protocol = options.protocol;

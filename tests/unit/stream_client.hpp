@@ -23,6 +23,8 @@ class Client {
     rtc::Reliability reliability = {};
     bool through_link = false;  // all that it sends and gets goes through link()
     std::string bind_address = "127.0.0.1";
+    nlohmann::json offer_with = nlohmann::json::object();  // further members of the offer
+    bool tells_candidates = true;
   };
   struct State {
     bool open = false, closed = false;
@@ -58,6 +60,11 @@ class Client {
   }
 
   int id() const { return id_; }
+  // The secret of this stay; empty before the first role.
+  std::string session() const {
+    const auto role = state().role;
+    return role.is_object() ? role.value("session", "") : "";
+  }
   rtc::DataChannel& channel() { return *channel_; }
   rtc::PeerConnection& connection() { return *connection_; }
   Link& link() { return *inbox_->link; }

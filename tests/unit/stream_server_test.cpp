@@ -77,9 +77,14 @@ TEST_F(RoomTest, TwoPlayAndTheThirdInherits) {
   ASSERT_TRUE(second.wait_cube(2));
   Client third(*relay);
   ASSERT_TRUE(third.wait([](const auto& s) { return s.role.is_object(); }));
-  EXPECT_EQ(
-      third.state().role,
-      (nlohmann::json{{"id", third.id()}, {"type", "role"}, {"cube", 0}, {"players", 2}, {"watchers", 1}}));
+  EXPECT_EQ(third.state().role, (nlohmann::json{{"id", third.id()},
+                                                {"type", "role"},
+                                                {"cube", 0},
+                                                {"players", 2},
+                                                {"watchers", 1},
+                                                {"session", third.session()}}));
+  EXPECT_GE(third.session().size(), 32u);
+  EXPECT_NE(third.session(), second.session());
   ASSERT_TRUE(first->wait([](const auto& s) { return s.role.at("watchers") == 1; }))
       << "everyone hears of a newcomer";
 

@@ -103,5 +103,88 @@ TEST(Session, BadBeginningsAreRefused) {
   EXPECT_THROW(Session({{std::numeric_limits<float>::infinity(), 0}}, step_right), std::invalid_argument);
 }
 
+constexpr Session::TimePoint start{};
+constexpr auto in_time = start + Session::claim_time, too_late = in_time + std::chrono::seconds(1);
+
+TEST(Session, WhoComesBackInTimeGetsItsCubeFromItsHeir) {
+  Session session = two_cubes();
+  session.join(1, {.secret = "one"}, start);
+  session.join(2, {.secret = "two"}, start);
+  session.join(3, {.secret = "three"}, start);
+  session.leave(1, start);
+  EXPECT_EQ(session.role(3).cube, 1u);
+  const auto joined = session.join(4, {.secret = "one again", .claim = "one"}, in_time);
+  EXPECT_FALSE(joined.claim_refused);
+  EXPECT_EQ(session.role(4), (Role{1, 2, 1}));
+  EXPECT_EQ(session.role(3).cube, 0u) << "the heir watches again";
+  session.leave(2, in_time);
+  EXPECT_EQ(session.role(3).cube, 2u) << "and is the next in line, as before";
+}
+
+TEST(Session, ClaimsThatFitNothingAreRefused) {
+  Session session = two_cubes();
+  session.join(1, {.secret = "one"}, start);
+  session.join(2, {.secret = "two"}, start);
+  session.leave(1, start);
+  session.join(3, {.secret = "three"}, start);
+  EXPECT_TRUE(session.join(4, {.secret = "four", .claim = "somebody"}, start).claim_refused);
+  EXPECT_TRUE(session.join(5, {.secret = "five", .claim = "one"}, too_late).claim_refused);
+  EXPECT_EQ(session.role(3).cube, 1u);
+  EXPECT_EQ(session.role(4).cube, 0u);
+  EXPECT_EQ(session.role(5), (Role{0, 2, 2})) << "a newcomer like others";
+}
+
+TEST(Session, SecretIsUsedOnce) {
+  Session session = two_cubes();
+  session.join(1, {.secret = "one"}, start);
+  session.join(2, {.secret = "two"}, start);
+  session.leave(1, start);
+  session.join(3, {.secret = "one again", .claim = "one"}, start);
+  EXPECT_TRUE(session.join(4, {.secret = "four", .claim = "one"}, start).claim_refused);
+  EXPECT_EQ(session.role(3).cube, 1u);
+}
+
+TEST(Session, ClaimOfAStayThatLastsTakesItsSeat) {
+  Session session = two_cubes();
+  for (const PeerNumber peer : {1, 2, 3, 4}) session.join(peer, {.secret = std::to_string(peer)}, start);
+  const auto player = session.join(11, {.secret = "new one", .claim = "1"}, too_late);
+  EXPECT_EQ(player.replaced, PeerNumber{1});
+  EXPECT_EQ(session.role(11), (Role{1, 2, 2}));
+  const auto watcher = session.join(13, {.secret = "new three", .claim = "3"}, too_late);
+  EXPECT_EQ(watcher.replaced, PeerNumber{3});
+  session.leave(1, too_late);  // has no seat any more
+  session.leave(2, too_late);
+  EXPECT_EQ(session.role(13).cube, 2u) << "a watcher keeps its place in the line";
+}
+
+// The one who had it first: who inherited it from that one has nothing to claim.
+TEST(Session, OfTwoWhoComeBackForOneCubeTheFirstOwnerHasIt) {
+  for (const bool owner_first : {true, false}) {
+    Session session = two_cubes();
+    for (const PeerNumber peer : {1, 2, 3, 4}) session.join(peer, {.secret = std::to_string(peer)}, start);
+    session.leave(1, start);
+    session.leave(3, start);  // the heir
+    ASSERT_EQ(session.role(4).cube, 1u);
+    const Entry owner{.secret = "a", .claim = "1"}, heir{.secret = "b", .claim = "3"};
+    if (owner_first) session.join(11, owner, start);
+    EXPECT_EQ(session.join(13, heir, start).claim_refused, owner_first);
+    if (!owner_first) session.join(11, owner, start);
+    EXPECT_EQ(session.role(11).cube, 1u);
+    EXPECT_EQ(session.role(13).cube, 0u);
+  }
+}
+
+TEST(Session, WatchersByTheirTicketNeverPlay) {
+  Session session = two_cubes();
+  session.join(1, {.may_play = false, .secret = "one"}, start);
+  session.join(2, {.secret = "two"}, start);
+  EXPECT_EQ(session.role(1).cube, 0u);
+  EXPECT_EQ(session.role(2), (Role{1, 1, 1}));
+  session.leave(2, start);
+  EXPECT_EQ(session.role(1).cube, 0u);
+  EXPECT_TRUE(session.join(3, {.may_play = false, .secret = "three", .claim = "two"}, start).claim_refused);
+  EXPECT_EQ(session.role(3).cube, 0u);
+}
+
 }  // namespace
 }  // namespace lichtveld::stream

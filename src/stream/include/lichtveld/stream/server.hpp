@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -21,6 +22,12 @@ struct ServerOptions {
   std::string scene_hash;
   // The IP address that WebRTC binds to. Empty or a wildcard (0.0.0.0): every address but the loopback ones.
   std::string bind_address;
+  // The UDP ports that WebRTC may use, both from 1 to 65535 and in order. The same one twice: all peers share
+  // it, and the server itself asks no TURN server.
+  unsigned short first_udp_port = 1024, last_udp_port = 65535;
+  // The IP address at which this machine is reached behind a 1:1 NAT, which clients are told beside its own.
+  // Empty: none.
+  std::string public_address;
   std::vector<Place> places;  // the cubes at rest; at most two are given to players
   // Where a cube (0 is the first) gets when its player asks for a move, given all places: called on the
   // server's thread, must not block. Returns the cube's new place (the old one when it cannot move). Not needed
@@ -44,6 +51,10 @@ struct ServerStatistics {
   // Messages (of clients and through signaling), channels and offers that were not understood, too long or too
   // many.
   std::uint64_t messages_refused = 0;
+  std::uint64_t claims_refused = 0;  // of a cube, with the secret of nobody's stay or of one too long ago
+  // Channels that opened, by the kinds of the two addresses, the server's first ("host_srflx"), and those that
+  // did not, by the cause ("no_candidates", "no_pair", "no_channel").
+  std::map<std::string, std::uint64_t> pairs, connect_failures;
   bool signaling_connected = false;
 };
 
