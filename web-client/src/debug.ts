@@ -8,6 +8,7 @@ import type { MapStatistics } from './statistics';
  *   error         what went wrong last, in words; empty if nothing did
  *   mapsReceived  light maps decoded and shown          mapsRefused  dropped: too large, or no picture
  *   role          {cube, players, watchers}, undefined before the server has told
+ *   name          what the link calls one, undefined without
  *   places        [{x, y}, ...] of the cubes, in metres, as received last
  *   map()         the newest map as ImageData, row 0 where v is 0; undefined before the first
  *   project(x, y, z)  CSS pixels {x, y} of a point of the scene, undefined behind the camera
@@ -22,6 +23,9 @@ export function exposeForDebugging(known: Readonly<Knowledge>, statistics: MapSt
     },
     get role() {
       return known.role;
+    },
+    get name() {
+      return known.name;
     },
     get places() {
       return known.places;

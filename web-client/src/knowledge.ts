@@ -8,6 +8,8 @@ export interface Knowledge {
   /** What went wrong last, in words. */
   error: string;
   role: Role | undefined;
+  /** What one is called, where the link says so. */
+  name: string | undefined;
   places: readonly Place[];
 }
 
@@ -15,5 +17,6 @@ export const nothingKnown = (): Knowledge => ({
   state: 'connecting',
   error: '',
   role: undefined,
+  name: undefined,
   places: [],
 });

@@ -1,4 +1,5 @@
 import { channelLabel, type Direction } from './protocol';
+import { Routes } from './routes';
 import type { Incoming, Outgoing } from './signaling';
 
 export interface PeerEvents {
@@ -9,18 +10,31 @@ export interface PeerEvents {
   onClose(): void;
 }
 
+export interface PeerOptions {
+  /** The render server's id at the relay. */
+  readonly server: string;
+  readonly iceServers: RTCIceServer[];
+  /** The secret of an earlier stay, to get back what we had. */
+  readonly session: string | undefined;
+}
+
 /** One WebRTC connection to one render server: we make the channel and offer, the server answers. */
 export class Peer {
-  readonly #connection = new RTCPeerConnection({ iceServers: [] });
+  /** The render server's id at the relay; another one after the relay or the server's line to it was new. */
+  server: string;
+  readonly routes = new Routes();
+  readonly #connection: RTCPeerConnection;
   readonly #channel: RTCDataChannel;
   /** Candidates may overtake the answer; they are of no use before it. */
   readonly #early: RTCIceCandidateInit[] = [];
   #ended = false;
 
   constructor(
-    readonly server: string,
+    { server, iceServers, session }: PeerOptions,
     private readonly events: PeerEvents,
   ) {
+    this.server = server;
+    this.#connection = new RTCPeerConnection({ iceServers });
     this.#channel = this.#connection.createDataChannel(channelLabel);
     this.#channel.binaryType = 'arraybuffer';
     this.#channel.onopen = () => events.onOpen();
@@ -30,15 +44,16 @@ export class Peer {
       if (this.#connection.connectionState === 'failed') this.#end();
     };
     this.#connection.onicecandidate = ({ candidate }) => {
-      if (candidate?.candidate)
-        events.onSignal({
-          id: server,
-          type: 'candidate',
-          candidate: candidate.candidate,
-          mid: candidate.sdpMid ?? '0',
-        });
+      if (!candidate?.candidate) return;
+      this.routes.addOwn(candidate.candidate);
+      events.onSignal({
+        id: server,
+        type: 'candidate',
+        candidate: candidate.candidate,
+        mid: candidate.sdpMid ?? '0',
+      });
     };
-    this.#offer().catch(() => this.#end());
+    this.#offer(session).catch(() => this.#end());
   }
 
   /** Takes an answer or a candidate of the server. */
@@ -46,9 +61,11 @@ export class Peer {
     if (this.#ended) return;
     try {
       if (message.type === 'answer') {
+        this.routes.addTheirs(message.description);
         await this.#connection.setRemoteDescription({ type: 'answer', sdp: message.description });
         for (const candidate of this.#early.splice(0)) await this.#connection.addIceCandidate(candidate);
       } else if (message.type === 'candidate') {
+        this.routes.addTheirs(message.candidate);
         const candidate = { candidate: message.candidate, sdpMid: message.mid };
         if (this.#connection.remoteDescription) await this.#connection.addIceCandidate(candidate);
         else if (this.#early.length < 64) this.#early.push(candidate);
@@ -68,10 +85,11 @@ export class Peer {
     this.#connection.close();
   }
 
-  async #offer(): Promise<void> {
+  async #offer(session: string | undefined): Promise<void> {
     const offer = await this.#connection.createOffer();
     await this.#connection.setLocalDescription(offer);
-    this.events.onSignal({ id: this.server, type: 'offer', description: offer.sdp ?? '' });
+    const description = offer.sdp ?? '';
+    this.events.onSignal({ id: this.server, type: 'offer', description, ...(session && { session }) });
   }
 
   #end(): void {

@@ -8,6 +8,7 @@ import { fetchScene, type SceneFile } from './scene_file';
 import { Session, type SessionEvents, type State } from './session';
 import type { Role, SceneOffer } from './signaling';
 import type { MapStatistics } from './statistics';
+import { joinToken } from './ticket';
 import type { View } from './view';
 
 /** Somebody in the room, player or watcher: brings what comes from the server into the room and onto the page. */
@@ -15,6 +16,8 @@ export class Player {
   readonly #scene: Promise<SceneFile>;
   readonly #session: Session;
   #receiver = new Receiver();
+  /** The next role is the first one after a connection was made. */
+  #joinedAnew = false;
   readonly #maps = new MapDecoder({
     onPicture: (picture, map) => {
       this.room.setMap(picture);
@@ -36,7 +39,8 @@ export class Player {
   }
 
   #fetchScene(): Promise<SceneFile> {
-    const scene = fetchScene('/scene.glb', this.room.surfaces, (reason, pause) => {
+    const source = { url: '/scene.glb', token: joinToken(location.hash) };
+    const scene = fetchScene(source, this.room.surfaces, (reason, pause) => {
       this.known.error = reason;
       this.view.missScene({ reason, retryAt: performance.now() + pause });
     });
@@ -54,13 +58,19 @@ export class Player {
         return offer.sha256 === undefined || offer.sha256 === file.sha256;
       },
       onState: (state, detail) => this.#stand(state, detail),
+      onRelay: (there) => this.view.missRelay(!there),
+      onGreeting: ({ name }) => {
+        this.known.name = name;
+        this.view.call(name);
+      },
       onRole: (role) => this.#play(role),
       onData: (data) => this.#take(data),
     };
   }
 
   #stand(state: State, detail: { reason: string; retryAt?: number }): void {
-    if (state === 'live') {
+    if (state === 'live' && this.known.state !== 'silent') {
+      this.#joinedAnew = true;
       this.#receiver = new Receiver();
       this.statistics.restart();
       this.room.settle();
@@ -71,9 +81,12 @@ export class Player {
   }
 
   #play({ cube, players, watchers }: Role): void {
-    const changed = cube !== this.known.role?.cube;
+    const before = this.known.role?.cube;
+    const changed = cube !== before;
+    const lost = before && !cube ? (this.#joinedAnew ? 'away' : 'returned') : undefined;
+    this.#joinedAnew = false;
     this.known.role = { cube, players, watchers };
-    this.view.showRole(this.known.role, changed);
+    this.view.showRole(this.known.role, changed, lost);
     if (changed) this.room.mark(cube);
   }
 
@@ -91,6 +104,8 @@ export class Player {
 
   #listenToThePage(): void {
     addEventListener('resize', () => this.room.resize());
+    // Another link for the same page: it may lead to another seat.
+    addEventListener('hashchange', () => location.reload());
     addEventListener('pagehide', () => this.#session.leave());
     // Out of the back/forward cache the page goes on where it was, without having been loaded.
     addEventListener('pageshow', ({ persisted }) => persisted && this.#session.comeBack());

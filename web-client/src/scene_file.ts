@@ -18,11 +18,22 @@ export interface Surfaces {
   readonly twoSided: Material;
 }
 
+/** Where the scene is, and the token of the link by which we join where the room wants one. */
+export interface SceneSource {
+  readonly url: string;
+  readonly token?: string | undefined;
+}
+
+/** Only with a link's token may the scene be seen; the session says the same, in the relay's words. */
+class NotAdmitted extends Error {}
+
 /** Fetches and reads the scene. Rejects with a sentence for people, without its full stop. */
-async function loadScene(url: string, surfaces: Surfaces): Promise<SceneFile> {
-  const response = await fetch(url, { cache: 'no-cache' }).catch(() => {
+async function loadScene({ url, token }: SceneSource, surfaces: Surfaces): Promise<SceneFile> {
+  const headers: Record<string, string> = token ? { Authorization: `Bearer ${token}` } : {};
+  const response = await fetch(url, { cache: 'no-cache', headers }).catch(() => {
     throw new Error('the server cannot be reached');
   });
+  if (response.status === 401) throw new NotAdmitted();
   if (!response.ok)
     throw new Error(`the server answered HTTP ${response.status} for ${new URL(response.url).pathname}`);
   const bytes = await response.arrayBuffer().catch(() => {
@@ -42,19 +53,21 @@ async function loadScene(url: string, surfaces: Surfaces): Promise<SceneFile> {
 }
 
 /**
- * Asks for the scene until it can be had: a server that is away or has a broken file may be restarted.
+ * Asks for the scene until it can be had: a server that is away or has a broken file may be restarted. Never settles for
+ * somebody who is not admitted.
  * @param onTrouble  called after each attempt that failed, with the milliseconds until the next one
  */
 export async function fetchScene(
-  url: string,
+  source: SceneSource,
   surfaces: Surfaces,
   onTrouble: (reason: string, pause: number) => void,
   backoff = new Backoff(),
 ): Promise<SceneFile> {
   for (;;) {
     try {
-      return await loadScene(url, surfaces);
+      return await loadScene(source, surfaces);
     } catch (error) {
+      if (error instanceof NotAdmitted) return new Promise(() => undefined);
       const pause = backoff.next();
       onTrouble(reasonOf(error), pause);
       await new Promise((resolve) => setTimeout(resolve, pause));

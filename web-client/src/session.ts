@@ -1,21 +1,45 @@
 import { Backoff } from './backoff';
 import { Peer } from './peer';
 import type { Direction } from './protocol';
-import { Signaling, tryAgainLater, type Incoming, type Role, type SceneOffer } from './signaling';
+import {
+  Signaling,
+  notAdmitted,
+  tryAgainLater,
+  type Incoming,
+  type Role,
+  type SceneOffer,
+  type Welcome,
+} from './signaling';
+import { joinToken, StaySecret, tabStorage } from './ticket';
 
 /**
- * How things stand, in the order in which a good session passes through them; the last four are where it can go wrong.
- *   connecting  asking the relay            waiting   no render server is there yet
- *   joining     making the data channel     live      the data channel is open
- *   full        the relay has no place      lost      trying again after a pause
+ * How things stand, in the order in which a good session passes through them; the rest are where it can go wrong.
+ *   connecting  asking the relay            waiting   no render server is there yet, or not any more
+ *   joining     making the data channel     live      the data channel is open, and the server speaks
+ *   silent      the data channel is open, but nothing has come for a while
+ *   full        the relay has no place      barred    the room is only for those with a link, and ours is none
+ *   lost        trying again after a pause  offline   the same, and it is the network that is gone
  *   mismatch    the server lights another scene file than this page draws
  *   unsupported this browser lacks something that we need
  */
 export type State =
-  'connecting' | 'waiting' | 'joining' | 'live' | 'full' | 'lost' | 'mismatch' | 'unsupported';
+  | 'connecting'
+  | 'waiting'
+  | 'joining'
+  | 'live'
+  | 'silent'
+  | 'full'
+  | 'barred'
+  | 'lost'
+  | 'offline'
+  | 'mismatch'
+  | 'unsupported';
 
 export interface SessionEvents {
   onState(state: State, detail: { reason: string; retryAt?: number }): void;
+  /** Whether the relay is there: without it an open channel goes on, but nobody new can join. */
+  onRelay(there: boolean): void;
+  onGreeting(greeting: Welcome): void;
   onRole(role: Role): void;
   onData(data: string | ArrayBuffer): void;
   /** Is this the scene that we draw? Asked before each join. */
@@ -24,9 +48,12 @@ export interface SessionEvents {
 
 /** A channel that does not open in this time [ms] will not: ICE takes well below a second on a good network. */
 const openTimeMs = 15_000;
-/** The server speaks at least once a second: silence of this length [ms] means that it is gone ... */
+/** The server speaks twice a second: after this time [ms] without a word it is not called live any more ... */
+const quietMs = 2_000;
+const quietMsWhenGone = 700;
+/** ... after this one it is gone ... */
 const silenceMs = 6_000;
-/** ... and of this length when signaling has lost it, too. */
+/** ... and after this one when signaling has lost it, too. */
 const silenceMsWhenGone = 1_800;
 
 /**
@@ -39,15 +66,23 @@ export class Session {
   #greeted = false;
   #server: string | undefined;
   #offeredTo: string | undefined;
+  #iceServers: RTCIceServer[] = [];
   #peer: Peer | undefined;
   #opened = false;
+  #quiet = false;
+  /** The last channel went silent, and no relay has been reached since. */
+  #cutOff = false;
+  /** Why the last attempt failed; empty once the relay has answered. */
+  #trouble = '';
   #heardAt = 0;
   #retryTimer: ReturnType<typeof setTimeout> | undefined;
   #retryAt = 0;
   readonly #backoff = new Backoff();
+  readonly #secret = new StaySecret(tabStorage());
 
   constructor(private readonly events: SessionEvents) {
-    setInterval(() => this.#watch(), 300);
+    setInterval(() => this.#watch(), 200);
+    addEventListener('online', () => this.#retryTimer && this.#connect());
     this.#connect();
   }
 
@@ -57,20 +92,22 @@ export class Session {
 
   /** The page goes, perhaps for good: says so to both ends instead of letting them find out by silence. */
   leave(): void {
+    this.#secret.keep();
     this.#dropPeer();
     this.#leaveRelay();
   }
 
   /** The page is back after `leave`. */
   comeBack(): void {
+    this.#secret.takeBack();
     this.#backoff.reset();
     this.#connect();
   }
 
   #connect(): void {
     this.#leaveRelay();
-    if (!this.#peer) this.events.onState('connecting', { reason: '' });
-    this.#signaling = new Signaling({
+    if (!this.#peer) this.events.onState('connecting', { reason: this.#trouble });
+    this.#signaling = new Signaling(joinToken(location.hash), {
       onMessage: (message) => void this.#take(message),
       onClose: (code, reason) => this.#relayClosed(code, reason),
     });
@@ -79,37 +116,62 @@ export class Session {
   async #take(message: Incoming): Promise<void> {
     switch (message.type) {
       case 'welcome':
-        this.#greeted = true;
-        this.#server = message.server;
-        if (message.server) await this.#serverCame(message.server, message.scene);
-        return;
+        return this.#greet(message);
       case 'waiting':
         this.#server = undefined;
         this.#backoff.reset();
         if (!this.#peer) this.events.onState('waiting', { reason: '' });
         return;
       case 'role':
-        if (message.id === this.#peer?.server) this.events.onRole(message);
-        return;
+        return this.#play(message);
       default:
         if (message.id === this.#peer?.server) await this.#peer.take(message);
     }
   }
 
+  async #greet(welcome: Welcome): Promise<void> {
+    this.#greeted = true;
+    this.#cutOff = false;
+    this.#trouble = '';
+    this.#server = welcome.server;
+    this.#iceServers = welcome.iceServers ?? [];
+    this.events.onRelay(true);
+    this.events.onGreeting(welcome);
+    if (welcome.server) await this.#serverCame(welcome.server, welcome.scene);
+  }
+
   async #serverCame(server: string, scene: SceneOffer | undefined): Promise<void> {
     const matches = !scene || (await this.events.hasScene(scene));
     // Much can have happened while the scene was loading.
-    if (this.#server !== server || this.#peer) return;
-    if (matches) this.#join(server);
+    if (this.#server !== server) return;
+    if (this.#peer) this.#rejoin(server);
+    else if (matches) this.#join(server);
     else this.events.onState('mismatch', { reason: '' });
+  }
+
+  /** The relay, or the server's line to it, is a new one: the server is told who of its clients we are. */
+  #rejoin(server: string): void {
+    const session = this.#secret.get();
+    if (this.#opened && session && this.#peer?.server !== server)
+      this.#signaling?.send({ id: server, type: 'rejoin', session });
+  }
+
+  #play(message: Role & { readonly id: string }): void {
+    if (!this.#peer) return;
+    // After a rejoin the server's id is a new one: that it knows our secret shows that it is still the same.
+    if (message.session && message.session === this.#secret.get()) this.#peer.server = message.id;
+    if (message.id !== this.#peer.server) return;
+    if (message.session) this.#secret.set(message.session);
+    this.events.onRole(message);
   }
 
   #join(server: string): void {
     this.#offeredTo = server;
-    this.#opened = false;
+    this.#opened = this.#quiet = false;
     this.#heardAt = performance.now();
     this.events.onState('joining', { reason: '' });
-    this.#peer = new Peer(server, {
+    const options = { server, iceServers: this.#iceServers, session: this.#secret.get() };
+    this.#peer = new Peer(options, {
       onSignal: (message) => this.#signaling?.send(message),
       onOpen: () => {
         this.#opened = true;
@@ -119,10 +181,18 @@ export class Session {
       onData: (data) => {
         this.#heardAt = performance.now();
         this.#backoff.reset();
+        if (this.#quiet) {
+          this.#quiet = false;
+          this.events.onState('live', { reason: '' });
+        }
         this.events.onData(data);
       },
-      onClose: () => this.#lost('the connection to the server was lost'),
+      onClose: () => this.#lost(this.#opened ? 'the connection to the render server was lost' : this.#noWay()),
     });
+  }
+
+  #noWay(): string {
+    return this.#peer?.routes.describeFailure() ?? '';
   }
 
   /** Ends a data channel that has gone silent, or that does not open. */
@@ -130,9 +200,15 @@ export class Session {
     if (!this.#peer) return;
     const silent = performance.now() - this.#heardAt;
     const gone = this.#greeted && this.#server !== this.#peer.server;
+    const quiet = gone ? quietMsWhenGone : quietMs;
     const allowed = !this.#opened ? openTimeMs : gone ? silenceMsWhenGone : silenceMs;
-    if (silent > allowed)
-      this.#lost(this.#opened ? 'the server went silent' : 'no direct connection could be made');
+    if (silent > allowed) {
+      this.#cutOff = this.#opened;
+      this.#lost(this.#opened ? 'the render server went silent' : this.#noWay());
+    } else if (this.#opened && silent > quiet && !this.#quiet) {
+      this.#quiet = true;
+      this.events.onState('silent', { reason: '' });
+    }
   }
 
   /** The data channel is gone: join again by the shortest way. */
@@ -153,17 +229,29 @@ export class Session {
 
   #relayClosed(code: number, reason: string): void {
     this.#leaveRelay();
-    if (code === tryAgainLater) this.#retry('full', reason || 'the room is full');
-    else this.#retry('lost', reason || 'the server cannot be reached');
+    if (code === notAdmitted) {
+      // A token that is no good stays so: another link changes the address, and that loads the page anew. A channel
+      // that was opened with it goes on.
+      if (this.#peer) this.events.onRelay(false);
+      else this.events.onState('barred', { reason });
+    } else if (code === tryAgainLater) {
+      this.#retry('full', reason || 'the room is full');
+    } else if (!navigator.onLine || this.#cutOff) {
+      this.#retry('offline', 'neither the render server nor signaling answers');
+    } else {
+      this.#retry('lost', reason || 'the signaling server cannot be reached');
+    }
   }
 
-  #retry(state: 'lost' | 'full', reason: string): void {
+  #retry(state: 'lost' | 'full' | 'offline', reason: string): void {
     this.#leaveRelay();
+    this.#trouble = reason;
     const pause = this.#backoff.next();
     this.#retryAt = performance.now() + pause;
     this.#retryTimer = setTimeout(() => this.#connect(), pause);
     // A picture that still comes needs no alarm: the relay is asked again quietly.
-    if (!this.#peer) this.events.onState(state, { reason, retryAt: this.#retryAt });
+    if (this.#peer) this.events.onRelay(false);
+    else this.events.onState(state, { reason, retryAt: this.#retryAt });
   }
 
   #leaveRelay(): void {
@@ -178,6 +266,6 @@ export class Session {
   #dropPeer(): void {
     this.#peer?.close();
     this.#peer = undefined;
-    this.#opened = false;
+    this.#opened = this.#quiet = false;
   }
 }

@@ -23,18 +23,32 @@ interface Standing extends Trouble {
 const words: Readonly<
   Record<State, (reason: string, s: number) => { short: string; title?: string; text?: string }>
 > = {
-  connecting: () => ({ short: 'Connecting' }),
+  connecting: (reason) =>
+    reason
+      ? { short: 'Connecting', title: 'Connection lost', text: `${sentence(reason)} Trying again now.` }
+      : { short: 'Connecting' },
   joining: () => ({ short: 'Joining' }),
   live: () => ({ short: 'Live' }),
-  waiting: () => ({
+  silent: () => ({ short: 'No word from the render server' }),
+  waiting: (reason) => ({
     short: 'Waiting for the render server',
-    title: 'No render server there',
+    title: reason ? 'The render server has gone' : 'No render server there',
     text: 'This room gets its light from a server that is not running now. The page joins by itself once it is.',
   }),
   lost: (reason, s) => ({
     short: `Reconnecting in ${s} s`,
     title: 'Connection lost',
     text: `${sentence(reason)} Trying again in ${s} s.`,
+  }),
+  offline: (reason, s) => ({
+    short: `Offline, trying again in ${s} s`,
+    title: 'The network is gone',
+    text: `${sentence(reason)} Look at your own connection. Trying again in ${s} s.`,
+  }),
+  barred: (reason) => ({
+    short: 'Not admitted',
+    title: 'This room is for those with a link',
+    text: `${sentence(reason)} Ask who runs the room for a new link, and open that one.`,
   }),
   full: (reason, s) => ({
     short: 'Refused',
@@ -60,6 +74,12 @@ const withoutScene = (reason: string, s: number) => ({
   text: `${sentence(reason)} Trying again in ${s} s.`,
 });
 
+/** What became of one's own cube. */
+const lostCube = {
+  returned: 'The player whose cube you had has come back. You are watching.',
+  away: 'You were away for too long: your cube went to somebody else. You are watching.',
+} as const;
+
 const sentence = (text: string): string => `${text.charAt(0).toUpperCase()}${text.slice(1)}.`;
 
 /** Milliseconds for which the hint stays after its keys have first been used. */
@@ -71,6 +91,7 @@ export class View {
   readonly arrowButtons = document.querySelectorAll<HTMLButtonElement>('#pad button');
   #standing: Standing = { state: 'connecting', reason: '' };
   #sceneTrouble: Trouble | undefined;
+  #relayIsAway = false;
   #hasLight = false;
   #hintTimer: ReturnType<typeof setTimeout> | undefined;
 
@@ -97,13 +118,28 @@ export class View {
     this.#write();
   }
 
-  /** `changed`: the cube is another one than before, which is worth a hint. */
-  showRole(role: Role, changed: boolean): void {
+  /** Whether signaling is away: light still comes, but nobody else can. */
+  missRelay(away: boolean): void {
+    this.#relayIsAway = away;
+    this.#write();
+  }
+
+  /** What stands at one's own cube. */
+  call(name: string | undefined): void {
+    element('own-label').textContent = name ?? 'you';
+  }
+
+  /**
+   * `changed`: the cube is another one than before, which is worth a hint; `lost`: there was one, and why it has gone:
+   * its first player has come back, or one was away oneself.
+   */
+  showRole(role: Role, changed: boolean, lost?: keyof typeof lostCube): void {
     const colour = cubeColours[role.cube - 1];
     document.body.dataset['role'] = String(role.cube);
-    element('hint-role').innerHTML = colour
-      ? `You move the <b>${colour.name} cube</b>`
-      : 'You are watching. A cube becomes yours when a player leaves.';
+    if (colour) element('hint-role').innerHTML = `You move the <b>${colour.name} cube</b>`;
+    else if (lost) element('hint-role').textContent = lostCube[lost];
+    else if (changed)
+      element('hint-role').textContent = 'You are watching. A cube becomes yours when a player leaves.';
     element('fact-players').textContent = String(role.players);
     element('fact-watchers').textContent = String(role.watchers);
     if (changed) this.#showHint(true);
@@ -141,10 +177,15 @@ export class View {
     const { reason, retryAt } = this.#sceneTrouble ?? this.#standing;
     const seconds = Math.max(0, Math.ceil(((retryAt ?? 0) - performance.now()) / 1000));
     const { short, title = '', text = '' } = (this.#sceneTrouble ? withoutScene : words[state])(reason, seconds);
-    setText('state-text', state === 'live' && !this.#hasLight ? 'Waiting for the first light' : short);
+    setText('state-text', state === 'live' ? this.#live(short) : short);
     setText('trouble-title', title);
     setText('trouble-text', text);
     element('trouble').hidden = title === '';
+  }
+
+  #live(short: string): string {
+    if (!this.#hasLight) return 'Waiting for the first light';
+    return this.#relayIsAway ? `${short}; signaling is away, trying again` : short;
   }
 
   #showHint(visible: boolean): void {

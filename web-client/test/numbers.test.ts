@@ -3,11 +3,11 @@ import { test } from 'node:test';
 import { Backoff } from '../src/backoff';
 import { MapStatistics } from '../src/statistics';
 
-test('pauses double up to 8 s, are shortened by at most half, and start again after a success', () => {
+test('pauses double up to 2 s, are 8 s after ten attempts, shortened by at most half, and start again', () => {
   const longest = new Backoff(() => 0);
   assert.deepEqual(
-    Array.from({ length: 7 }, () => longest.next()),
-    [500, 1000, 2000, 4000, 8000, 8000, 8000],
+    Array.from({ length: 12 }, () => longest.next()),
+    [500, 1000, ...Array<number>(8).fill(2000), 8000, 8000],
   );
   const shortest = new Backoff(() => 1);
   assert.deepEqual([shortest.next(), shortest.next()], [250, 500]);

@@ -34,7 +34,7 @@ const good = JSON.stringify({
 
 test('only the outermost movable node of a branch is movable, in the order of the file', async (t) => {
   const url = await serve(t, [{ status: 200, body: good }]);
-  const file = await fetchScene(url, surfaces, (reason) => assert.fail(reason));
+  const file = await fetchScene({ url }, surfaces, (reason) => assert.fail(reason));
   assert.deepEqual(
     file.movable.map(({ name }) => name),
     ['outer', 'other'],
@@ -49,7 +49,7 @@ test('a scene that cannot be had is told each time and asked for again', { timeo
   ]);
   const told: string[] = [];
   const file = await fetchScene(
-    url,
+    { url },
     surfaces,
     (reason, pause) => {
       assert.ok(pause > 0);
