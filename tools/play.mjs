@@ -1,30 +1,55 @@
 #!/usr/bin/env node
 /**
  * Runs a room on this machine: signaling with the web client, and the render server. Prints `ready http://HOST:PORT`
- * once a player can join; everything else goes to stderr. Ends both when it is ended or when one of them dies.
+ * once a player can join; everything else goes to stderr. A program that ends unasked is started again; when that is of
+ * no use, or a signal comes, all are ended.
  *
- *   node tools/play.mjs [--host 127.0.0.1] [--port 8080] [--scene assets/cornell.glb] [-- SERVE OPTIONS]
+ *   node tools/play.mjs [--host 127.0.0.1] [--port 8080] [--scene assets/cornell.glb] [--public] [-- SERVE OPTIONS]
  *
  * --host is a name or address of this machine, for the page and for WebRTC; 0.0.0.0 or :: takes every address (WebRTC
  * then uses all but the loopback ones).
  *
+ * --public is for a machine that the internet reaches: it listens on every address, lets in only those who have a link
+ * with a token, takes one UDP port (the page's number) for the light, and runs a coturn beside it. --public-ip names the
+ * address where a 1:1 NAT stands before the machine. Options of signaling may be given too: --name, --tls-cert,
+ * --tls-key, --join-secret-file, --trust-proxy, --ice-server, --turn-secret-file, --allow-origin, --max-clients,
+ * --max-per-address.
+ *
  * LICHTVELD names another render server than build/release/lichtveld. Exit codes: 0 ended by a signal, 2 bad usage or
  * input (a busy port, say), else the code of the program that died.
  */
-import { spawn } from 'node:child_process';
+import { execFileSync } from 'node:child_process';
 import { randomBytes } from 'node:crypto';
 import { lookup } from 'node:dns/promises';
 import { existsSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
+import { get as getHttp } from 'node:http';
+import { get as getHttps } from 'node:https';
+import { isIP } from 'node:net';
 import { tmpdir } from 'node:os';
 import { dirname, join, resolve } from 'node:path';
-import { createInterface } from 'node:readline';
 import { setTimeout as sleep } from 'node:timers/promises';
 import { fileURLToPath } from 'node:url';
 import { parseArgs } from 'node:util';
+import { Company } from './play/company.mjs';
+import { iceServers, publicAddress, writeTurnConfiguration } from './play/public.mjs';
 
 const root = dirname(dirname(fileURLToPath(import.meta.url)));
-/** Milliseconds between SIGTERM and SIGKILL. */
-const patience = 5000;
+const signalingMain = join(root, 'signaling/main.js');
+const linkMain = join(root, 'signaling/link.js');
+
+/** Options of signaling that are passed on as they are. */
+const signalingOptions = /** @type {const} */ ({
+  name: { type: 'string', multiple: true },
+  'tls-cert': { type: 'string' },
+  'tls-key': { type: 'string' },
+  'join-secret-file': { type: 'string' },
+  'trust-proxy': { type: 'string', multiple: true },
+  'ice-server': { type: 'string', multiple: true },
+  'turn-secret-file': { type: 'string' },
+  'allow-origin': { type: 'string', multiple: true },
+  'max-clients': { type: 'string' },
+  'max-per-address': { type: 'string' },
+});
 
 const say = (text) => process.stderr.write(`play: ${text}\n`);
 
@@ -35,13 +60,17 @@ async function readOptions() {
   const { values } = parseArgs({
     args: own,
     options: {
-      host: { type: 'string', default: '127.0.0.1' },
+      host: { type: 'string' },
       port: { type: 'string', default: '8080' },
       scene: { type: 'string', default: join(root, 'assets/cornell.glb') },
+      public: { type: 'boolean', default: false },
+      'public-ip': { type: 'string' },
+      ...signalingOptions,
     },
   });
   if (!/^\d{1,5}$/.test(values.port) || Number(values.port) < 1 || Number(values.port) > 65535)
     throw new Error(`--port wants a number from 1 to 65535, not '${values.port}'`);
+  if (values['public-ip'] !== undefined && !values.public) throw new Error('--public-ip is for --public: add that');
   const executable = resolve(process.env.LICHTVELD || join(root, 'build/release/lichtveld'));
   for (const [path, hint] of [
     [executable, 'build it with ./dev build'],
@@ -49,12 +78,15 @@ async function readOptions() {
     [join(root, 'web-client/dist/index.html'), 'build it with npm run build --workspace web-client'],
   ])
     if (!existsSync(path)) throw new Error(`${path} is missing: ${hint}`);
-  const host = values.host || '0.0.0.0';
+  const host = (values.host ?? (values.public ? '0.0.0.0' : '127.0.0.1')) || '0.0.0.0';
   // One address for all: WebRTC binds to no name, and a name may have several addresses.
   const { address } = await lookup(host, { verbatim: false }).catch((error) => {
     throw new Error(`--host ${host} is no known host (${error.code}): give an address of this machine`);
   });
-  return { ...values, host, address, executable, serveOptions };
+  if (values['tls-cert'] && !values.name)
+    throw new Error('--tls-cert wants --name too: the name in the certificate, by which the render server calls');
+  const seenFromOutside = values.public ? publicAddress(values['public-ip']) : undefined;
+  return { ...values, host, address, executable, serveOptions, seenFromOutside };
 }
 
 /** Where somebody on this machine reaches what listens on `host`. */
@@ -64,82 +96,63 @@ function urlHost(host) {
   return host.includes(':') ? `[${host}]` : host;
 }
 
-/** The programs that run; ends with `finish`, whatever happens. */
-class Company {
-  #members = new Map();
-  #folder = mkdtempSync(join(tmpdir(), 'lichtveld-play-'));
-  #finishing = false;
+/** A secret in a file that only we can read. */
+function writeSecret(folder, name) {
+  const path = join(folder, name);
+  const secret = randomBytes(32).toString('hex');
+  writeFileSync(path, `${secret}\n`, { mode: 0o600 });
+  return { path, secret };
+}
 
-  get finishing() {
-    return this.#finishing;
-  }
+/** Signaling's arguments among ours, as they were given. */
+const passedOn = (options) =>
+  Object.keys(signalingOptions).flatMap((name) =>
+    [options[name] ?? []].flat().flatMap((value) => [`--${name}`, value]),
+  );
 
-  /** A fresh secret that only we can read. */
-  writeToken() {
-    const path = join(this.#folder, 'token');
-    writeFileSync(path, `${randomBytes(32).toString('hex')}\n`, { mode: 0o600 });
-    return path;
+/** Starts a TURN server, and answers with the arguments by which signaling hands it out. */
+function startTurn(company, folder, address) {
+  try {
+    execFileSync('turnserver', ['--version'], { stdio: 'ignore' });
+  } catch (error) {
+    if (error.code === 'ENOENT')
+      throw new Error('--public needs coturn: install it (apt install coturn), or give your own server with --ice-server');
   }
-
-  start(name, command, args, onLine = (_line) => {}) {
-    // A group of its own: Ctrl-C reaches us alone, and we end the others in order.
-    const child = spawn(command, args, { detached: true, stdio: ['ignore', 'pipe', 'pipe'] });
-    const gone = new Promise((settle) => {
-      child.once('error', (error) => settle({ code: 1, why: `could not be started: ${error.message}` }));
-      child.once('exit', (code, signal) =>
-        settle({ code: code ?? 1, why: signal ? `was ended by ${signal}` : `ended with exit code ${code}` }),
-      );
-    });
-    this.#members.set(name, { child, gone });
-    for (const stream of [child.stdout, child.stderr])
-      createInterface({ input: stream }).on('line', (line) => {
-        process.stderr.write(`[${name}] ${line}\n`);
-        onLine(line);
-      });
-    gone.then(({ code, why }) => {
-      if (this.#finishing) return;
-      say(`${name} ${why}; ending the rest`);
-      this.finish(code || 1);
-    });
-  }
-
-  async finish(code) {
-    if (this.#finishing) return;
-    this.#finishing = true;
-    const members = [...this.#members.values()];
-    const all = Promise.all(members.map(({ gone }) => gone));
-    this.#signal('SIGTERM');
-    const done = await Promise.race([all.then(() => true), sleep(patience, false, { ref: false })]);
-    if (!done) {
-      this.#signal('SIGKILL');
-      await all;
-    }
-    this.removeFiles();
-    process.exit(code);
-  }
-
-  #signal(signal) {
-    for (const { child } of this.#members.values())
-      if (child.pid !== undefined && child.exitCode === null && child.signalCode === null)
-        process.kill(-child.pid, signal);
-  }
-
-  removeFiles() {
-    rmSync(this.#folder, { recursive: true, force: true });
-  }
+  const { path, secret } = writeSecret(folder, 'turn-secret');
+  company.start('coturn', 'turnserver', ['-c', writeTurnConfiguration({ folder, secret, address })]);
+  return ['--turn-secret-file', path, ...iceServers(address.address).flatMap((url) => ['--ice-server', url])];
 }
 
 /** Waits until a render server is with signaling; false when we are ending instead. */
 async function untilServed(company, url) {
+  // Our own process on our own port: the certificate is another name's.
+  const options = { rejectUnauthorized: false, timeout: 2000 };
+  const health = () =>
+    new Promise((settle) => {
+      const request = (url.startsWith('https:') ? getHttps : getHttp)(`${url}/healthz`, options, (response) => {
+        let text = '';
+        response.on('data', (chunk) => (text += chunk));
+        response.on('end', () => settle(text));
+      });
+      request.on('timeout', () => request.destroy());
+      request.on('error', () => settle(''));
+    });
   while (!company.finishing) {
-    const health = await fetch(`${url}/healthz`, { signal: AbortSignal.timeout(2000) }).then(
-      (r) => r.json(),
-      () => undefined,
-    );
-    if (health?.server) return true;
+    if ((await health()).includes('"server":true')) return true;
     await sleep(100);
   }
   return false;
+}
+
+/** Links for those who may join; on a terminal only, as whoever reads a log could join, too. */
+function showLinks(secretFile, url) {
+  const link = (role) => {
+    const args = [linkMain, '--join-secret-file', secretFile, '--url', url, '--role', role];
+    if (process.stdout.isTTY) return execFileSync(process.execPath, args, { encoding: 'utf8' }).trim();
+    return `node ${args.join(' ')}`;
+  };
+  say(process.stdout.isTTY ? 'links, good for a day:' : 'make links for those who may join with:');
+  for (const role of ['player', 'watcher']) process.stderr.write(`  ${role}  ${link(role)}\n`);
 }
 
 let options;
@@ -150,41 +163,51 @@ try {
   process.exit(2);
 }
 
-const company = new Company();
-process.on('exit', () => company.removeFiles());
+const folder = mkdtempSync(join(tmpdir(), 'lichtveld-play-'));
+const removeFiles = () => rmSync(folder, { recursive: true, force: true });
+const company = new Company(say, removeFiles);
+process.on('exit', removeFiles);
 for (const signal of ['SIGINT', 'SIGTERM', 'SIGHUP']) process.on(signal, () => company.finish(0));
 
-const { host, address, port, scene, executable, serveOptions } = options;
-const token = company.writeToken();
-const authority = `${urlHost(host)}:${port}`;
+const { host, address, port, scene, executable, serveOptions, seenFromOutside } = options;
+const token = writeSecret(folder, 'token').path;
+const scheme = options['tls-cert'] ? 's' : '';
+// A certificate is for a name; without one the machine reaches itself by its own address.
+const authority = `${scheme ? options.name[0] : urlHost(host)}:${port}`;
 const client = join(root, 'web-client/dist');
+const signalingArgs = ['--host', address, '--port', port, '--token-file', token, '--client', client];
+signalingArgs.push('--scene', resolve(scene), ...passedOn(options));
+if (!isIP(host) && !options.name?.includes(host)) signalingArgs.push('--name', host);
+
+let joinSecret = options['join-secret-file'];
+if (seenFromOutside) {
+  try {
+    if (!options['ice-server']) signalingArgs.push(...startTurn(company, folder, seenFromOutside));
+  } catch (error) {
+    say(error.message);
+    process.exit(2);
+  }
+  if (!joinSecret) {
+    joinSecret = writeSecret(folder, 'join-secret').path;
+    signalingArgs.push('--join-secret-file', joinSecret);
+  }
+}
 // Only its own word counts: whatever answers on that port may be somebody else's.
 await new Promise((listening) => {
-  const args = [
-    '--host',
-    address,
-    '--port',
-    port,
-    '--token-file',
-    token,
-    '--client',
-    client,
-    '--scene',
-    resolve(scene),
-  ];
-  company.start('signaling', process.execPath, [join(root, 'signaling/main.js'), ...args], (line) => {
+  company.start('signaling', process.execPath, [signalingMain, ...signalingArgs], (line) => {
     if (line.startsWith('signaling listens on')) listening(undefined);
   });
 });
-const args = [
-  '--scene',
-  resolve(scene),
-  '--signaling',
-  `ws://${authority}/server`,
-  '--token-file',
-  token,
-  '--bind',
-  address,
-];
-company.start('server', executable, ['serve', ...args, ...serveOptions]);
-if (await untilServed(company, `http://${authority}`)) console.log(`ready http://${authority}`);
+
+const serveArgs = ['--scene', resolve(scene), '--signaling', `ws${scheme}://${authority}/server`];
+serveArgs.push('--token-file', token, '--bind', address);
+if (seenFromOutside && !serveOptions.includes('--udp-port')) serveArgs.push('--udp-port', port);
+if (seenFromOutside && !seenFromOutside.ours) serveArgs.push('--public-ip', seenFromOutside.address);
+company.start('server', executable, ['serve', ...serveArgs, ...serveOptions]);
+if (await untilServed(company, `http${scheme}://${urlHost(host)}:${port}`)) {
+  const outside = seenFromOutside
+    ? `http${scheme}://${options.name?.[0] ?? seenFromOutside.address}:${port}`
+    : `http${scheme}://${authority}`;
+  console.log(`ready ${outside}`);
+  if (joinSecret) showLinks(joinSecret, outside);
+}

@@ -1,6 +1,6 @@
 import assert from 'node:assert/strict';
 import { once } from 'node:events';
-import { existsSync, mkdtempSync, readFileSync, readdirSync, rmSync } from 'node:fs';
+import { existsSync, mkdtempSync, readFileSync, readdirSync, rmSync, writeFileSync } from 'node:fs';
 import { createServer } from 'node:net';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
@@ -43,6 +43,37 @@ test('when the render server gives up, so does the rest, with its exit code and 
   const program = startPlay(t, { port: await freePort(), serveOptions: ['--psf', '25'] });
   assert.deepEqual(await program.exited, [2, null]);
   assert.match(program.output, /play: server ended with exit code 2/);
+  assert.equal(program.stdout, '');
+});
+
+test('a program that is killed is started again, and says so', async (t) => {
+  const port = await freePort();
+  const program = startPlay(t, { port });
+  await program.says(`ready http://127.0.0.1:${port}\n`);
+  const health = async () => (await fetch(`http://127.0.0.1:${port}/healthz`).catch(() => undefined))?.json();
+  for (const name of ['server', 'signaling']) {
+    const pid = childrenOf(program.child.pid).find((child) =>
+      readFileSync(`/proc/${child}/cmdline`, 'utf8').includes(name === 'server' ? '\0serve\0' : 'signaling/main.js'),
+    );
+    process.kill(Number(pid), 'SIGKILL');
+    await program.says(`play: ${name} was ended by SIGKILL; starting it again in 0.5 s (1 of 5)`);
+    const end = Date.now() + 20_000;
+    while (!(await health())?.server) {
+      assert.ok(Date.now() < end, `the ${name} does not come back`);
+      await new Promise((proceed) => setTimeout(proceed, 100));
+    }
+  }
+  assert.equal(program.stdout, `ready http://127.0.0.1:${port}\n`, 'it says ready once');
+});
+
+test('a program that ends again and again is given up with its reason', async (t) => {
+  const folder = mkdtempSync(join(tmpdir(), 'lichtveld-e2e-'));
+  t.after(() => rmSync(folder, { recursive: true, force: true }));
+  const broken = join(folder, 'lichtveld');
+  writeFileSync(broken, '#!/bin/sh\nexit 1\n', { mode: 0o755 });
+  const program = startPlay(t, { port: await freePort(), env: { LICHTVELD: broken } });
+  assert.deepEqual(await program.exited, [1, null]);
+  assert.match(program.output, /starting it again in 8 s \(5 of 5\)[^]*exit code 1, for the 6th time in a row; ending/);
   assert.equal(program.stdout, '');
 });
 
