@@ -6,8 +6,14 @@
 export class Room {
   /** @type {{id: string, sceneSha256?: string} | undefined} */
   #server;
-  /** @type {Set<string>} */
-  #clients = new Set();
+  /** @type {Map<string, import('./join_tokens.js').Ticket>} */
+  #clients = new Map();
+  #iceServersFor;
+
+  /** @param {(id: string) => object[]} [iceServersFor]  what this peer is given to find a way with */
+  constructor(iceServersFor = () => []) {
+    this.#iceServersFor = iceServersFor;
+  }
 
   get hasServer() {
     return this.#server !== undefined;
@@ -25,18 +31,26 @@ export class Room {
    */
   serverJoins(id, sceneSha256) {
     this.#server = { id, sceneSha256 };
-    return [
-      { to: id, message: { type: 'welcome', id } },
-      ...[...this.#clients].map((client) => this.#welcome(client)),
-    ];
+    return [...this.greetServer(), ...[...this.#clients.keys()].map((client) => this.#welcome(client))];
+  }
+
+  /**
+   * The render server's greeting; once more before the credentials in it expire.
+   * @returns {Delivery[]}
+   */
+  greetServer() {
+    if (!this.#server) return [];
+    const { id } = this.#server;
+    return [{ to: id, message: this.#withIceServers({ type: 'welcome', id }) }];
   }
 
   /**
    * @param {string} id
+   * @param {import('./join_tokens.js').Ticket} [ticket]  what its link allows it
    * @returns {Delivery[]}
    */
-  clientJoins(id) {
-    this.#clients.add(id);
+  clientJoins(id, ticket = {}) {
+    this.#clients.set(id, ticket);
     const welcome = this.#welcome(id);
     return this.#server ? [welcome] : [welcome, { to: id, message: { type: 'waiting' } }];
   }
@@ -48,7 +62,7 @@ export class Room {
   leaves(id) {
     if (this.#server?.id === id) {
       this.#server = undefined;
-      return [...this.#clients].map((to) => ({ to, message: { type: 'waiting' } }));
+      return [...this.#clients.keys()].map((to) => ({ to, message: { type: 'waiting' } }));
     }
     if (!this.#clients.delete(id) || !this.#server) return [];
     return [{ to: this.#server.id, message: { id, type: 'gone' } }];
@@ -65,15 +79,23 @@ export class Room {
     const known = this.#server?.id === to || this.#clients.has(to);
     if (!known) return { refused: 'no_such_peer' };
     const allowed = this.#server?.id === from ? this.#clients.has(to) : to === this.#server?.id;
-    return allowed ? { to, message: { ...message, id: from } } : { refused: 'forbidden_route' };
+    if (!allowed) return { refused: 'forbidden_route' };
+    // Whether somebody may play, and what he is called, is the token's word and not his own.
+    const ticket = message.type === 'offer' ? this.#clients.get(from) : {};
+    return { to, message: { ...message, ...ticket, id: from } };
   }
 
   /** @param {string} to */
   #welcome(to) {
-    const message = { type: 'welcome', id: to };
+    const message = this.#withIceServers({ type: 'welcome', id: to, ...this.#clients.get(to) });
     if (!this.#server) return { to, message };
     const { id: server, sceneSha256: sha256 } = this.#server;
     const scene = { url: '/scene.glb', ...(sha256 && { sha256 }) };
     return { to, message: { ...message, server, scene } };
+  }
+
+  #withIceServers(message) {
+    const iceServers = this.#iceServersFor(message.id);
+    return iceServers.length > 0 ? { ...message, iceServers } : message;
   }
 }

@@ -1,31 +1,47 @@
 import { randomUUID } from 'node:crypto';
-import { createServer } from 'node:http';
 import { WebSocketServer } from 'ws';
+import { createAddressFinder } from './addresses.js';
 import { hasGoodOrigin, hasToken, refuseUpgrade, sceneHash } from './admission.js';
 import { Connection } from './connection.js';
+import { Gate } from './gate.js';
+import { createHostCheck } from './hosts.js';
+import { connectionKey, createGuardedServer, createHandler, pathOf } from './http.js';
+import { createIceServers } from './ice.js';
+import { JoinTokens, subProtocol, tokenOf } from './join_tokens.js';
 import { defaultLimits } from './limits.js';
 import { parseMessage } from './messages.js';
 import { createMetrics } from './metrics.js';
+import { createRefusals } from './refusals.js';
 import { Room } from './room.js';
-import { serveClient, serveScene } from './static.js';
+import { readCertificate, watchCertificate } from './tls.js';
+
+/** Codes by which a browser, which cannot read the answer to a refused upgrade, learns why it was refused. */
+const closeCodes = { tryAgainLater: 1013, notAdmitted: 4401 };
 
 /**
  * Starts the signaling server: /server for the render server, /client for browsers, the web client's files,
  * /scene.glb, /healthz and /metrics.
  *
- * @param {{host: string, port: number, token: string, clientFolder: string, scene: Buffer,
- *          allowedOrigins?: string[], limits?: Partial<import('./limits.js').Limits>,
- *          log?: (line: string) => void}} options  port 0 takes a free one
+ * @typedef {{host: string, port: number, token: string, clientFolder: string, scene: Buffer,
+ *            names?: string[], allowedOrigins?: string[], proxies?: string[], iceUrls?: string[], turnSecret?: string,
+ *            joinSecret?: string, tls?: {cert: string, key: string},
+ *            limits?: Partial<import('./limits.js').Limits>, log?: (line: string) => void}} Options
+ *   port 0 takes a free one; names and proxies as in hosts.js and addresses.js; without joinSecret everybody may join
+ * @param {Options} options
  * @returns {Promise<{port: number, close: () => Promise<void>}>} rejects with the system's error (EADDRINUSE, ...)
  */
-export async function startSignaling({ log = () => {}, allowedOrigins = [], ...options }) {
+export async function startSignaling({ log = () => {}, ...options }) {
   const limits = { ...defaultLimits, ...options.limits };
-  const room = new Room();
+  const addresses = createAddressFinder(options.proxies ?? []);
+  const iceServers = { urls: options.iceUrls ?? [], turnSecret: options.turnSecret, lifetimeMs: limits.turnLifetimeMs };
+  const room = new Room(createIceServers(iceServers));
   const metrics = createMetrics(room);
+  const refuse = createRefusals(metrics, log);
+  const gate = new Gate(limits);
+  const tokens = options.joinSecret === undefined ? undefined : new JoinTokens(options.joinSecret);
+  const hostIsOurs = createHostCheck(options.names ?? []);
   /** @type {Map<string, Connection>} */
   const connections = new Map();
-  /** @type {Map<string, number>} */
-  const clientsOfAddress = new Map();
 
   const deliver = (deliveries) => {
     for (const { to, message } of deliveries) connections.get(to)?.send(message);
@@ -58,8 +74,9 @@ export async function startSignaling({ log = () => {}, allowedOrigins = [], ...o
     });
     connections.set(id, connection);
     metrics.connections.inc({ role });
-    deliver(role === 'server' ? room.serverJoins(id, join.sceneSha256) : room.clientJoins(id));
-    log(`${role} ${id} joined; ${room.clientCount} clients`);
+    deliver(role === 'server' ? room.serverJoins(id, join.sceneSha256) : room.clientJoins(id, join.ticket));
+    const name = join.ticket?.name ? ` (${join.ticket.name})` : '';
+    log(`${role} ${id}${name} joined; ${room.clientCount} clients`);
   };
 
   const webSockets = new WebSocketServer({
@@ -67,79 +84,99 @@ export async function startSignaling({ log = () => {}, allowedOrigins = [], ...o
     clientTracking: false,
     maxPayload: limits.maxMessageBytes,
     perMessageDeflate: false, // small messages: not worth a decompressor that strangers can feed
+    handleProtocols: (protocols) => (protocols.has(subProtocol) ? subProtocol : false),
   });
 
-  const refuse = (socket, status, reason, error) => {
-    metrics.refusedConnections.inc({ reason });
-    log(`refused a connection: ${error}`);
+  const decline = (request, socket, status, reason, error) => {
+    refuse(reason, addresses.visitor(request), error);
     refuseUpgrade(socket, status, error);
   };
 
   const upgradeServer = (request, socket, head) => {
-    if (!hasToken(request, options.token)) return refuse(socket, 401, 'token', 'wrong or missing token');
-    if (room.hasServer) return refuse(socket, 409, 'second_server', 'a render server is already connected');
+    if (!hasToken(request, options.token)) return decline(request, socket, 401, 'token', 'wrong or missing token');
+    if (room.hasServer)
+      return decline(request, socket, 409, 'second_server', 'a render server is already connected');
     const sceneSha256 = sceneHash(request);
     webSockets.handleUpgrade(request, socket, head, (ws) => accept(ws, 'server', { sceneSha256 }));
   };
 
-  const upgradeClient = (request, socket, head) => {
-    if (!hasGoodOrigin(request, allowedOrigins))
-      return refuse(
-        socket,
-        403,
-        'origin',
-        `pages of ${String(request.headers.origin).slice(0, 100)} may not join`,
-      );
-    const address = request.socket.remoteAddress ?? '';
-    const sameAddress = clientsOfAddress.get(address) ?? 0;
-    const full =
-      room.clientCount >= limits.maxClients
-        ? { reason: 'room_full', text: 'the room is full' }
-        : sameAddress >= limits.maxClientsPerAddress
-          ? { reason: 'address_full', text: 'too many connections from your address' }
-          : undefined;
+  // A browser cannot read the answer to a refused upgrade, so it is accepted and closed with the reason.
+  const turnAway = (request, socket, head, { reason, code, text }) => {
+    refuse(reason, addresses.visitor(request), text);
     webSockets.handleUpgrade(request, socket, head, (ws) => {
-      // A browser cannot read the answer to a refused upgrade, so it is accepted and closed with the reason.
-      if (full) {
-        metrics.refusedConnections.inc({ reason: full.reason });
-        ws.on('error', () => {});
-        ws.close(1013, full.text);
-        setTimeout(() => ws.terminate(), limits.closeTimeoutMs).unref();
-        return;
-      }
-      clientsOfAddress.set(address, sameAddress + 1);
-      const onClose = () => {
-        const left = (clientsOfAddress.get(address) ?? 1) - 1;
-        if (left > 0) clientsOfAddress.set(address, left);
-        else clientsOfAddress.delete(address);
-      };
-      accept(ws, 'client', { onClose });
+      ws.on('error', () => {});
+      ws.close(code, text);
+      setTimeout(() => ws.terminate(), limits.closeTimeoutMs).unref();
     });
   };
 
-  const http = createServer(createHandler({ room, metrics, ...options }));
-  http.headersTimeout = limits.headersTimeoutMs;
-  http.maxConnections = limits.maxTcpConnections;
+  const upgradeClient = async (request, socket, head) => {
+    if (!hostIsOurs(request.headers.host))
+      return decline(request, socket, 421, 'host', 'this page is not served by that name (see --name)');
+    if (!hasGoodOrigin(request, options.allowedOrigins ?? [])) {
+      const origin = String(request.headers.origin).slice(0, 100);
+      return decline(request, socket, 403, 'origin', `pages of ${origin} may not join`);
+    }
+    const admitted = tokens ? await tokens.verify(tokenOf(request)) : { ticket: {} };
+    if (socket.destroyed) return;
+    if ('refused' in admitted) {
+      const { refused: reason, text } = admitted;
+      return turnAway(request, socket, head, { reason, code: closeCodes.notAdmitted, text });
+    }
+    const visitor = addresses.visitor(request);
+    const full =
+      room.clientCount >= limits.maxClients
+        ? { reason: 'room_full', text: 'the room is full' }
+        : gate.enters(visitor, performance.now())
+          ? undefined
+          : { reason: 'address_full', text: 'too many connections from your address' };
+    if (full) return turnAway(request, socket, head, { ...full, code: closeCodes.tryAgainLater });
+    const onClose = () => gate.leaves(visitor);
+    let accepted = false;
+    webSockets.handleUpgrade(request, socket, head, (ws) => {
+      accepted = true;
+      accept(ws, 'client', { ticket: admitted.ticket, onClose });
+    });
+    // Refused by the library itself, which has answered: no place is held.
+    if (!accepted) onClose();
+  };
+
+  const handler = createHandler({ room, metrics, tokens, ...options });
+  const certificate = options.tls && readCertificate(options.tls);
+  const http = createGuardedServer({ limits, gate, addresses, refuse, hostIsOurs, certificate }, handler);
   http.on('upgrade', (request, socket, head) => {
     socket.on('error', () => socket.destroy());
+    socket.setTimeout(0); // from here on pings tell whether somebody is there
+    const visitor = addresses.visitor(request);
+    if (!gate.joins(visitor, performance.now()))
+      return decline(request, socket, 429, 'joins', 'too many attempts to join');
+    gate.upgrades(addresses.visitorOf(socket.remoteAddress), connectionKey(socket));
     const path = pathOf(request);
     if (path === '/server') upgradeServer(request, socket, head);
     else if (path === '/client') upgradeClient(request, socket, head);
-    else refuse(socket, 404, 'path', 'WebSockets are at /server and /client');
+    else decline(request, socket, 404, 'path', 'WebSockets are at /server and /client');
   });
 
   await new Promise((resolve, reject) => {
     http.once('error', reject);
     http.listen(options.port, options.host, () => resolve(undefined));
   });
-  const heartbeat = setInterval(() => {
-    for (const connection of connections.values()) connection.heartbeat();
-  }, limits.pingIntervalMs);
+  const stopWatching = options.tls
+    ? watchCertificate(options.tls, /** @type {import('node:https').Server} */ (http), log, limits.certificateLookMs)
+    : () => {};
+  const timers = [
+    setInterval(() => {
+      for (const connection of connections.values()) connection.heartbeat();
+    }, limits.pingIntervalMs),
+    setInterval(() => gate.forget(performance.now()), limits.visitorMemoryMs),
+    setInterval(() => deliver(room.greetServer()), limits.turnLifetimeMs / 2),
+  ];
 
   return {
     port: /** @type {import('node:net').AddressInfo} */ (http.address()).port,
     async close() {
-      clearInterval(heartbeat);
+      timers.forEach(clearInterval);
+      stopWatching();
       const closed = new Promise((resolve) => http.close(resolve));
       // All in one go, so that nobody hears of the others' leaving: the render server would end the sessions of clients
       // that it took for gone, and those go on without us.
@@ -149,33 +186,5 @@ export async function startSignaling({ log = () => {}, allowedOrigins = [], ...o
       http.closeIdleConnections();
       await closed;
     },
-  };
-}
-
-/** @type {(request: import('node:http').IncomingMessage) => string} */
-const pathOf = (request) => (request.url ?? '/').split('?', 1)[0];
-
-/** The plain HTTP side. */
-function createHandler({ room, metrics, clientFolder, scene }) {
-  const client = serveClient(clientFolder);
-  const sceneFile = serveScene(scene);
-  const plain = { 'Cache-Control': 'no-store', 'X-Content-Type-Options': 'nosniff' };
-  const sendJson = (response, status, value) =>
-    response.writeHead(status, { ...plain, 'Content-Type': 'application/json' }).end(JSON.stringify(value));
-
-  return async (request, response) => {
-    if (request.method !== 'GET' && request.method !== 'HEAD')
-      return sendJson(response.setHeader('Allow', 'GET, HEAD'), 405, { error: 'only GET and HEAD' });
-    switch (pathOf(request)) {
-      case '/healthz':
-        return sendJson(response, 200, { status: 'ok', server: room.hasServer, clients: room.clientCount });
-      case '/metrics':
-        response.writeHead(200, { ...plain, 'Content-Type': metrics.registry.contentType });
-        return response.end(await metrics.registry.metrics());
-      case '/scene.glb':
-        return sceneFile(request, response);
-      default:
-        client(request, response, () => sendJson(response, 404, { error: 'no such file' }));
-    }
   };
 }

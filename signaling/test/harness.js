@@ -39,8 +39,8 @@ export class Peer {
   #messages = [];
   #wanted = [];
 
-  constructor(url, options) {
-    this.socket = new WebSocket(url, options);
+  constructor(url, options, protocols = []) {
+    this.socket = new WebSocket(url, protocols, options);
     this.closed = new Promise((resolve) => {
       this.socket.on('close', (code, reason) => resolve({ code, reason: reason.toString() }));
     });
