@@ -76,5 +76,9 @@ export function sendFile(request, response, { bytes, headers }) {
   }
   response.writeHead(200, { ...headers, 'Content-Length': bytes.length });
   if (request.method === 'HEAD' || bytes.length === 0) return void response.end();
-  pipeline(Readable.from(slices(bytes), { objectMode: false, highWaterMark: sliceBytes }), response, () => {});
+  pipeline(
+    Readable.from(slices(bytes), { objectMode: false, highWaterMark: sliceBytes }),
+    response,
+    () => {},
+  );
 }

@@ -12,7 +12,10 @@ export function createHostCheck(names) {
   const known = new Set(['localhost', own, `${own}.local`, ...names.map((name) => name.toLowerCase())]);
   return (host) => {
     if (host === undefined) return true; // HTTP/1.0, which no browser speaks
-    const name = host.toLowerCase().replace(/:\d{1,5}$/, '').replace(/\.$/, '');
+    const name = host
+      .toLowerCase()
+      .replace(/:\d{1,5}$/, '')
+      .replace(/\.$/, '');
     return known.has(name) || isIP(name.replace(/^\[(.*)\]$/, '$1')) !== 0;
   };
 }

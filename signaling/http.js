@@ -38,7 +38,9 @@ export function createHandler({ room, metrics, clientFolder, scene, tokens }) {
       return sendJson(response, 200, { status: 'ok', server: room.hasServer, clients: room.clientCount });
     if (path === '/metrics') {
       const text = await metrics.registry.metrics();
-      return void response.writeHead(200, { ...plain, 'Content-Type': metrics.registry.contentType }).end(text);
+      return void response
+        .writeHead(200, { ...plain, 'Content-Type': metrics.registry.contentType })
+        .end(text);
     }
     if (path === '/scene.glb') return sendScene(request, response);
     const file = files.get(path);
@@ -70,10 +72,19 @@ export function createGuardedServer({ limits, gate, addresses, refuse, hostIsOur
     const visitor = addresses.visitor(request);
     if (!gate.requests(visitor, performance.now())) {
       refuse('requests', visitor, 'too many requests');
-      return sendJson(response, 429, { error: 'too many requests' }, { 'Retry-After': '1', Connection: 'close' });
+      return sendJson(
+        response,
+        429,
+        { error: 'too many requests' },
+        { 'Retry-After': '1', Connection: 'close' },
+      );
     }
     if (!hostIsOurs(request.headers.host)) {
-      refuse('host', visitor, `the page is not served by the name ${String(request.headers.host).slice(0, 100)}`);
+      refuse(
+        'host',
+        visitor,
+        `the page is not served by the name ${String(request.headers.host).slice(0, 100)}`,
+      );
       const error = 'this page is not served by that name: start signaling with --name for each that it has';
       return sendJson(response, 421, { error });
     }

@@ -1,7 +1,8 @@
 import { createHmac } from 'node:crypto';
 
 /** host, [v6] or host:port after the scheme; TURN may name its transport (RFC 7064 and 7065). */
-const pattern = /^(?:(stuns?):(?:\[[\da-f:]+\]|[\w.-]+)(?::\d{1,5})?|(turns?):(?:\[[\da-f:]+\]|[\w.-]+)(?::\d{1,5})?(?:\?transport=(?:udp|tcp))?)$/i;
+const pattern =
+  /^(?:(stuns?):(?:\[[\da-f:]+\]|[\w.-]+)(?::\d{1,5})?|(turns?):(?:\[[\da-f:]+\]|[\w.-]+)(?::\d{1,5})?(?:\?transport=(?:udp|tcp))?)$/i;
 
 /** @type {(url: string) => 'stun' | 'turn' | undefined} nothing for what is no address of either */
 export function kindOfIceServer(url) {

@@ -20,7 +20,10 @@ export const subProtocol = 'lichtveld.signaling';
 
 /** @type {(name: unknown) => boolean} a name that does no harm in a log or on a page */
 export const isName = (name) =>
-  typeof name === 'string' && name.length > 0 && name.length <= maxNameLength && /^[\p{L}\p{N} ._'-]+$/u.test(name);
+  typeof name === 'string' &&
+  name.length > 0 &&
+  name.length <= maxNameLength &&
+  /^[\p{L}\p{N} ._'-]+$/u.test(name);
 
 /** The token that a request shows: in a page's sub-protocols, or as other programs do. */
 export function tokenOf(request) {
@@ -73,7 +76,8 @@ export class JoinTokens {
         },
       };
     } catch (error) {
-      if (error instanceof errors.JWTExpired) return { refused: 'stale_token', text: 'your link has expired' };
+      if (error instanceof errors.JWTExpired)
+        return { refused: 'stale_token', text: 'your link has expired' };
       return bad;
     }
   }

@@ -42,13 +42,17 @@ function readOptions() {
     process.exit(0);
   }
   const { 'join-secret-file': secretFile, url, role, name } = values;
-  if (!secretFile || !url) throw new InputError(`--${secretFile ? 'url' : 'join-secret-file'} is missing\n${usage}`);
-  if (!isPage(url)) throw new InputError(`--url ${url} is no address of a page: it looks like https://room.example.org`);
-  if (role !== 'player' && role !== 'watcher') throw new InputError(`--role is player or watcher, not '${role}'`);
+  if (!secretFile || !url)
+    throw new InputError(`--${secretFile ? 'url' : 'join-secret-file'} is missing\n${usage}`);
+  if (!isPage(url))
+    throw new InputError(`--url ${url} is no address of a page: it looks like https://room.example.org`);
+  if (role !== 'player' && role !== 'watcher')
+    throw new InputError(`--role is player or watcher, not '${role}'`);
   if (name !== undefined && !isName(name))
     throw new InputError(`--name has 1 to 40 letters, digits, spaces and any of . _ ' -; '${name}' has not`);
   const hours = Number(values.hours);
-  if (!(hours > 0 && hours <= 24 * 365)) throw new InputError(`--hours wants a number up to ${24 * 365}, not '${values.hours}'`);
+  if (!(hours > 0 && hours <= 24 * 365))
+    throw new InputError(`--hours wants a number up to ${24 * 365}, not '${values.hours}'`);
   return { secret: readJoinSecret(secretFile), url, ticket: /** @type {const} */ ({ role, name, hours }) };
 }
 

@@ -70,7 +70,8 @@ function parseWork(json, { maxWorkEntries }) {
     work[list] = [];
     for (const entry of entries) {
       if (typeof entry !== 'object' || entry === null) return { refused: 'malformed' };
-      if (typeof entry.name !== 'string' || !/^[a-z_]{1,32}$/.test(entry.name)) return { refused: 'malformed' };
+      if (typeof entry.name !== 'string' || !/^[a-z_]{1,32}$/.test(entry.name))
+        return { refused: 'malformed' };
       const kept = { name: entry.name };
       for (const [name, accepts] of Object.entries(fields)) {
         if (!accepts(entry[name])) return { refused: 'malformed' };

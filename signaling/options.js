@@ -62,7 +62,9 @@ function readSecret(option, path) {
   if (words.length === 0)
     throw new InputError(`the ${what} file ${path} is empty: write a long random word into it`);
   if (words.length > 1)
-    throw new InputError(`the ${what} file ${path} has white space within the ${what}: write one long random word`);
+    throw new InputError(
+      `the ${what} file ${path} has white space within the ${what}: write one long random word`,
+    );
   return words[0];
 }
 
@@ -100,10 +102,14 @@ function readTls({ 'tls-cert': cert, 'tls-key': key }) {
 function readIceServers({ 'ice-server': urls, 'turn-secret-file': secretFile }) {
   for (const url of urls)
     if (!kindOfIceServer(url))
-      throw new InputError(`--ice-server ${url}: it looks like stun:HOST:PORT, turn:HOST:PORT or turns:HOST:PORT`);
+      throw new InputError(
+        `--ice-server ${url}: it looks like stun:HOST:PORT, turn:HOST:PORT or turns:HOST:PORT`,
+      );
   const turn = urls.find((url) => kindOfIceServer(url) === 'turn');
   if (turn && secretFile === undefined)
-    throw new InputError(`--ice-server ${turn} wants --turn-secret-file, the secret that the TURN server knows`);
+    throw new InputError(
+      `--ice-server ${turn} wants --turn-secret-file, the secret that the TURN server knows`,
+    );
   const turnSecret = secretFile === undefined ? undefined : readSecret('turn-secret-file', secretFile);
   return { iceUrls: urls, turnSecret };
 }
@@ -112,7 +118,9 @@ function checkProxies(proxies) {
   try {
     createAddressFinder(proxies);
   } catch (error) {
-    throw new InputError(`--trust-proxy: ${error.message}; give an address, a network such as 10.0.0.0/8, or loopback`);
+    throw new InputError(
+      `--trust-proxy: ${error.message}; give an address, a network such as 10.0.0.0/8, or loopback`,
+    );
   }
   return proxies;
 }

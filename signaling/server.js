@@ -33,7 +33,11 @@ const closeCodes = { tryAgainLater: 1013, notAdmitted: 4401 };
 export async function startSignaling({ log = () => {}, ...options }) {
   const limits = { ...defaultLimits, ...options.limits };
   const addresses = createAddressFinder(options.proxies ?? []);
-  const iceServers = { urls: options.iceUrls ?? [], turnSecret: options.turnSecret, lifetimeMs: limits.turnLifetimeMs };
+  const iceServers = {
+    urls: options.iceUrls ?? [],
+    turnSecret: options.turnSecret,
+    lifetimeMs: limits.turnLifetimeMs,
+  };
   const room = new Room(createIceServers(iceServers));
   const metrics = createMetrics(room);
   const refuse = createRefusals(metrics, log);
@@ -93,7 +97,8 @@ export async function startSignaling({ log = () => {}, ...options }) {
   };
 
   const upgradeServer = (request, socket, head) => {
-    if (!hasToken(request, options.token)) return decline(request, socket, 401, 'token', 'wrong or missing token');
+    if (!hasToken(request, options.token))
+      return decline(request, socket, 401, 'token', 'wrong or missing token');
     if (room.hasServer)
       return decline(request, socket, 409, 'second_server', 'a render server is already connected');
     const sceneSha256 = sceneHash(request);
@@ -162,7 +167,12 @@ export async function startSignaling({ log = () => {}, ...options }) {
     http.listen(options.port, options.host, () => resolve(undefined));
   });
   const stopWatching = options.tls
-    ? watchCertificate(options.tls, /** @type {import('node:https').Server} */ (http), log, limits.certificateLookMs)
+    ? watchCertificate(
+        options.tls,
+        /** @type {import('node:https').Server} */ (http),
+        log,
+        limits.certificateLookMs,
+      )
     : () => {};
   const timers = [
     setInterval(() => {

@@ -12,7 +12,9 @@ export function readCertificate({ cert: certFile, key: keyFile }) {
     try {
       return readFileSync(path);
     } catch (error) {
-      throw new Error(`cannot read the ${option} ${path}: ${error.code ?? error.message}; give another with --${option}`);
+      throw new Error(
+        `cannot read the ${option} ${path}: ${error.code ?? error.message}; give another with --${option}`,
+      );
     }
   };
   const [cert, key] = [read('tls-cert', certFile), read('tls-key', keyFile)];
@@ -26,11 +28,15 @@ export function readCertificate({ cert: certFile, key: keyFile }) {
   if (Date.parse(first.validTo) < now)
     throw new Error(`the certificate ${certFile} expired on ${first.validTo}: renew it`);
   if (Date.parse(first.validFrom) > now)
-    throw new Error(`the certificate ${certFile} is only good from ${first.validFrom} on: look at this machine's clock`);
+    throw new Error(
+      `the certificate ${certFile} is only good from ${first.validFrom} on: look at this machine's clock`,
+    );
   try {
     createSecureContext({ cert, key });
   } catch (error) {
-    throw new Error(`${keyFile} is no key of the certificate ${certFile} (${error.message}): give both of one pair`);
+    throw new Error(
+      `${keyFile} is no key of the certificate ${certFile} (${error.message}): give both of one pair`,
+    );
   }
   return { cert, key };
 }

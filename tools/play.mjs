@@ -70,7 +70,8 @@ async function readOptions() {
   });
   if (!/^\d{1,5}$/.test(values.port) || Number(values.port) < 1 || Number(values.port) > 65535)
     throw new Error(`--port wants a number from 1 to 65535, not '${values.port}'`);
-  if (values['public-ip'] !== undefined && !values.public) throw new Error('--public-ip is for --public: add that');
+  if (values['public-ip'] !== undefined && !values.public)
+    throw new Error('--public-ip is for --public: add that');
   const executable = resolve(process.env.LICHTVELD || join(root, 'build/release/lichtveld'));
   for (const [path, hint] of [
     [executable, 'build it with ./dev build'],
@@ -84,7 +85,9 @@ async function readOptions() {
     throw new Error(`--host ${host} is no known host (${error.code}): give an address of this machine`);
   });
   if (values['tls-cert'] && !values.name)
-    throw new Error('--tls-cert wants --name too: the name in the certificate, by which the render server calls');
+    throw new Error(
+      '--tls-cert wants --name too: the name in the certificate, by which the render server calls',
+    );
   const seenFromOutside = values.public ? publicAddress(values['public-ip']) : undefined;
   return { ...values, host, address, executable, serveOptions, seenFromOutside };
 }
@@ -116,7 +119,9 @@ function startTurn(company, folder, address) {
     execFileSync('turnserver', ['--version'], { stdio: 'ignore' });
   } catch (error) {
     if (error.code === 'ENOENT')
-      throw new Error('--public needs coturn: install it (apt install coturn), or give your own server with --ice-server');
+      throw new Error(
+        '--public needs coturn: install it (apt install coturn), or give your own server with --ice-server',
+      );
   }
   const { path, secret } = writeSecret(folder, 'turn-secret');
   company.start('coturn', 'turnserver', ['-c', writeTurnConfiguration({ folder, secret, address })]);
@@ -129,11 +134,15 @@ async function untilServed(company, url) {
   const options = { rejectUnauthorized: false, timeout: 2000 };
   const health = () =>
     new Promise((settle) => {
-      const request = (url.startsWith('https:') ? getHttps : getHttp)(`${url}/healthz`, options, (response) => {
-        let text = '';
-        response.on('data', (chunk) => (text += chunk));
-        response.on('end', () => settle(text));
-      });
+      const request = (url.startsWith('https:') ? getHttps : getHttp)(
+        `${url}/healthz`,
+        options,
+        (response) => {
+          let text = '';
+          response.on('data', (chunk) => (text += chunk));
+          response.on('end', () => settle(text));
+        },
+      );
       request.on('timeout', () => request.destroy());
       request.on('error', () => settle(''));
     });

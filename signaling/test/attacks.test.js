@@ -47,7 +47,9 @@ async function visit(program) {
     await new Promise((settle, fail) => {
       const request = get({ port: program.port, host: '127.0.0.1', path, agent: false }, (response) => {
         response.resume();
-        response.on('end', () => (response.statusCode === 200 ? settle(undefined) : fail(new Error(`HTTP ${response.statusCode}`))));
+        response.on('end', () =>
+          response.statusCode === 200 ? settle(undefined) : fail(new Error(`HTTP ${response.statusCode}`)),
+        );
         response.on('error', fail);
       });
       request.on('error', fail);
@@ -141,13 +143,22 @@ for (const [name, attack] of Object.entries(attacks)) {
   });
 }
 
-test('the attacker\'s own address recovers while the attack hangs on', { timeout: 120_000 }, async (t) => {
-  for (const name of ['requests in one go, thousands a connection', 'answers that nobody reads', 'headers that never end']) {
+test("the attacker's own address recovers while the attack hangs on", { timeout: 120_000 }, async (t) => {
+  for (const name of [
+    'requests in one go, thousands a connection',
+    'answers that nobody reads',
+    'headers that never end',
+  ]) {
     const program = await startProgram(t);
     const sockets = attacks[name](program, '127.0.0.1');
     t.after(() => sockets.forEach((socket) => socket.destroy()));
     const begin = performance.now();
-    while (!(await visit(program).then(() => true, () => false))) {
+    while (
+      !(await visit(program).then(
+        () => true,
+        () => false,
+      ))
+    ) {
       assert.ok(performance.now() - begin < 20_000, `${name}: nobody gets in`);
       await sleep(200);
     }
@@ -156,21 +167,26 @@ test('the attacker\'s own address recovers while the attack hangs on', { timeout
   }
 });
 
-test('half-sent headers and idle connections go in the time that is promised', { timeout: 60_000 }, async (t) => {
-  const program = await startProgram(t);
-  const began = performance.now();
-  const [slow] = open(program, '127.0.0.2', 1, (socket) => socket.resume().write('GET / HTTP/1.1\r\nX: '));
-  const [unread] = open(program, '127.0.0.2', 1, (socket) => {
-    socket.pause();
-    socket.write(request('/scene.glb'));
-  });
-  const gone = (socket) => new Promise((settle) => socket.once('close', () => settle(performance.now() - began)));
-  const slowGone = await gone(slow);
-  assert.ok(slowGone < 13_000, `headers were waited for during ${slowGone} ms`);
-  const left = program.files();
-  while (program.files() >= left) {
-    assert.ok(performance.now() - began < 25_000, 'an answer that nobody reads is kept');
-    await sleep(200);
-  }
-  unread.destroy();
-});
+test(
+  'half-sent headers and idle connections go in the time that is promised',
+  { timeout: 60_000 },
+  async (t) => {
+    const program = await startProgram(t);
+    const began = performance.now();
+    const [slow] = open(program, '127.0.0.2', 1, (socket) => socket.resume().write('GET / HTTP/1.1\r\nX: '));
+    const [unread] = open(program, '127.0.0.2', 1, (socket) => {
+      socket.pause();
+      socket.write(request('/scene.glb'));
+    });
+    const gone = (socket) =>
+      new Promise((settle) => socket.once('close', () => settle(performance.now() - began)));
+    const slowGone = await gone(slow);
+    assert.ok(slowGone < 13_000, `headers were waited for during ${slowGone} ms`);
+    const left = program.files();
+    while (program.files() >= left) {
+      assert.ok(performance.now() - began < 25_000, 'an answer that nobody reads is kept');
+      await sleep(200);
+    }
+    unread.destroy();
+  },
+);

@@ -9,8 +9,23 @@ import { join } from 'node:path';
 export function makeAuthority(folder) {
   const openssl = (...args) => execFileSync('openssl', args, { cwd: folder, stdio: 'pipe' });
   const ca = join(folder, 'ca.pem');
-  openssl('req', '-x509', '-newkey', 'ec', '-pkeyopt', 'ec_paramgen_curve:P-256', '-nodes', '-keyout', 'ca.key', '-out', ca,
-    '-days', '2', '-subj', '/CN=Lichtveld test CA');
+  openssl(
+    'req',
+    '-x509',
+    '-newkey',
+    'ec',
+    '-pkeyopt',
+    'ec_paramgen_curve:P-256',
+    '-nodes',
+    '-keyout',
+    'ca.key',
+    '-out',
+    ca,
+    '-days',
+    '2',
+    '-subj',
+    '/CN=Lichtveld test CA',
+  );
   return {
     ca,
     /**
@@ -19,12 +34,41 @@ export function makeAuthority(folder) {
      * @returns {{cert: string, key: string}}
      */
     issue(name, { names = 'DNS:localhost,IP:127.0.0.1', days = '2' } = {}) {
-      const [cert, key, request, extensions] = ['pem', 'key', 'csr', 'ext'].map((end) => join(folder, `${name}.${end}`));
+      const [cert, key, request, extensions] = ['pem', 'key', 'csr', 'ext'].map((end) =>
+        join(folder, `${name}.${end}`),
+      );
       writeFileSync(extensions, `subjectAltName=${names}\n`);
-      openssl('req', '-newkey', 'ec', '-pkeyopt', 'ec_paramgen_curve:P-256', '-nodes', '-keyout', key, '-out', request,
-        '-subj', `/CN=${name}`);
-      openssl('x509', '-req', '-in', request, '-CA', ca, '-CAkey', 'ca.key', '-CAcreateserial', '-days', days, '-out', cert,
-        '-extfile', extensions);
+      openssl(
+        'req',
+        '-newkey',
+        'ec',
+        '-pkeyopt',
+        'ec_paramgen_curve:P-256',
+        '-nodes',
+        '-keyout',
+        key,
+        '-out',
+        request,
+        '-subj',
+        `/CN=${name}`,
+      );
+      openssl(
+        'x509',
+        '-req',
+        '-in',
+        request,
+        '-CA',
+        ca,
+        '-CAkey',
+        'ca.key',
+        '-CAcreateserial',
+        '-days',
+        days,
+        '-out',
+        cert,
+        '-extfile',
+        extensions,
+      );
       return { cert, key };
     },
   };

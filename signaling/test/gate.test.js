@@ -29,7 +29,10 @@ test('the oldest connection of an address makes place, but never a WebSocket, an
   gate.connects('a', '2', old, 0);
   gate.connects('a', '3', young, 0);
   assert.deepEqual(gate.connects('a', '4', anew, 0), { evicted: 'connections' });
-  assert.deepEqual([webSocket, old, young, anew, other].map(({ ended }) => ended), [false, true, false, false, false]);
+  assert.deepEqual(
+    [webSocket, old, young, anew, other].map(({ ended }) => ended),
+    [false, true, false, false, false],
+  );
   gate.upgrades('a', '3');
   gate.upgrades('a', '4');
   assert.deepEqual(gate.connects('a', '5', connection(), 0), { refused: 'connections' });
@@ -38,16 +41,31 @@ test('the oldest connection of an address makes place, but never a WebSocket, an
 test('connections, requests and attempts to join are limited a second, each address by itself', () => {
   const gate = new Gate(limits);
   const count = (ask) => Array.from({ length: 100 }, ask).filter(Boolean).length;
-  assert.equal(count((_, n) => !gate.connects('a', `${n}`, connection(), 0).refused), 5);
-  assert.equal(count(() => gate.requests('a', 0)), 20);
-  assert.equal(count(() => gate.requests('a', 1000)), 10);
-  assert.equal(count(() => gate.joins('a', 0)), 2);
+  assert.equal(
+    count((_, n) => !gate.connects('a', `${n}`, connection(), 0).refused),
+    5,
+  );
+  assert.equal(
+    count(() => gate.requests('a', 0)),
+    20,
+  );
+  assert.equal(
+    count(() => gate.requests('a', 1000)),
+    10,
+  );
+  assert.equal(
+    count(() => gate.joins('a', 0)),
+    2,
+  );
   assert.equal(gate.joins('b', 0), true);
 });
 
 test('places of clients are given back', () => {
   const gate = new Gate(limits);
-  assert.deepEqual([1, 2, 3].map(() => gate.enters('a', 0)), [true, true, false]);
+  assert.deepEqual(
+    [1, 2, 3].map(() => gate.enters('a', 0)),
+    [true, true, false],
+  );
   gate.leaves('a');
   assert.equal(gate.enters('a', 0), true);
 });
@@ -73,7 +91,11 @@ test('IPv4 is one visitor however it is written, an IPv6 network is one', () => 
 
 test('X-Forwarded-For counts from a proxy that is trusted, and its last untrusted address', () => {
   const request = (remoteAddress, forwarded) =>
-    /** @type {any} */ ({ socket: { remoteAddress }, connection: { remoteAddress }, headers: { 'x-forwarded-for': forwarded } });
+    /** @type {any} */ ({
+      socket: { remoteAddress },
+      connection: { remoteAddress },
+      headers: { 'x-forwarded-for': forwarded },
+    });
   const { visitor, isProxy } = createAddressFinder(['loopback']);
   assert.equal(visitor(request('127.0.0.1', '198.51.100.1, 203.0.113.5')), '203.0.113.5');
   assert.equal(visitor(request('203.0.113.9', '198.51.100.1')), '203.0.113.9', 'anybody can write a header');

@@ -61,7 +61,10 @@ export class Peer {
   }
 
   static server(url, { headers = {}, ...options } = {}) {
-    return new Peer(`${url}/server`, { ...options, headers: { Authorization: `Bearer ${token}`, ...headers } });
+    return new Peer(`${url}/server`, {
+      ...options,
+      headers: { Authorization: `Bearer ${token}`, ...headers },
+    });
   }
 
   static client(url, options) {

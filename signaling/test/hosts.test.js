@@ -17,9 +17,23 @@ const ask = (signaling, host, path = '/') =>
 test('addresses, localhost, our own and given names are ours, nothing else', () => {
   const isOurs = createHostCheck(['Room.example.org']);
   const port = ':8080';
-  for (const host of ['127.0.0.1', '10.1.2.3', '[::1]', 'localhost', hostname(), 'room.example.org', 'room.example.org.'])
+  for (const host of [
+    '127.0.0.1',
+    '10.1.2.3',
+    '[::1]',
+    'localhost',
+    hostname(),
+    'room.example.org',
+    'room.example.org.',
+  ])
     for (const whole of [host, host + port]) assert.equal(isOurs(whole), true, whole);
-  for (const host of ['evil.example', 'room.example.org.evil.example', 'xroom.example.org', '', '127.0.0.1.nip.io'])
+  for (const host of [
+    'evil.example',
+    'room.example.org.evil.example',
+    'xroom.example.org',
+    '',
+    '127.0.0.1.nip.io',
+  ])
     assert.equal(isOurs(host), false, host);
   assert.equal(isOurs(undefined), true);
 });
@@ -27,7 +41,8 @@ test('addresses, localhost, our own and given names are ours, nothing else', () 
 test('a foreign page that has its name lead here gets nothing', async (t) => {
   const signaling = await start(t, { names: ['room.example.org'] });
   const foreign = `evil.example:${signaling.port}`;
-  for (const path of ['/', '/scene.glb', '/healthz', '/metrics']) assert.equal(await ask(signaling, foreign, path), 421, path);
+  for (const path of ['/', '/scene.glb', '/healthz', '/metrics'])
+    assert.equal(await ask(signaling, foreign, path), 421, path);
   // Of one origin with us, as its visitor's browser sees it.
   const page = Peer.client(signaling.ws, { headers: { Host: foreign }, origin: `http://${foreign}` });
   assert.equal((await page.refused).status, 421);

@@ -45,7 +45,13 @@ test('a link lets in: as player or watcher, by a name, in a page or a program', 
   const bearer = { headers: { Authorization: `Bearer ${await tokens.sign({ role: 'player', hours: 1 })}` } };
   const program = Peer.client(signaling.ws, bearer);
   assert.deepEqual(Object.keys(await program.next()).sort(), ['id', 'scene', 'server', 'type']);
-  program.send({ id: serverId, type: 'offer', description: 'v=0', seat: 'watcher', session: 'an-earlier-stay' });
+  program.send({
+    id: serverId,
+    type: 'offer',
+    description: 'v=0',
+    seat: 'watcher',
+    session: 'an-earlier-stay',
+  });
   const second = await server.next();
   assert.deepEqual([second.seat, second.name, second.session], [undefined, undefined, 'an-earlier-stay']);
 });
@@ -78,7 +84,10 @@ test('the scene is for those with a link, the page for everybody', async (t) => 
   const signaling = await start(t, { joinSecret: secret });
   const scene = (headers) => fetch(`${signaling.http}/scene.glb`, { headers });
   assert.equal((await scene({})).status, 401);
-  assert.equal((await scene({ Authorization: `Bearer ${await forge({ role: 'player' }, { expires: '-1m' })}` })).status, 401);
+  assert.equal(
+    (await scene({ Authorization: `Bearer ${await forge({ role: 'player' }, { expires: '-1m' })}` })).status,
+    401,
+  );
   const good = await tokens.sign({ role: 'watcher', hours: 1 });
   assert.equal((await scene({ Authorization: `Bearer ${good}` })).status, 200);
   assert.equal((await fetch(signaling.http)).status, 200);
@@ -86,7 +95,11 @@ test('the scene is for those with a link, the page for everybody', async (t) => 
 
 test('neither tokens nor secrets are logged', async (t) => {
   const lines = [];
-  const signaling = await start(t, { joinSecret: secret, turnSecret: 'the-turn-secret', log: (line) => lines.push(line) });
+  const signaling = await start(t, {
+    joinSecret: secret,
+    turnSecret: 'the-turn-secret',
+    log: (line) => lines.push(line),
+  });
   const good = await tokens.sign({ role: 'player', name: 'Ada', hours: 1 });
   const bad = await forge({ role: 'player' }, { expires: '-1m' });
   await joinAsPage(signaling.ws, good).next();
@@ -106,7 +119,18 @@ test('link.js makes links that let in, and says what is wrong with its options',
   const program = fileURLToPath(new URL('../link.js', import.meta.url));
   const run = (...args) => spawnSync(process.execPath, [program, ...args], { encoding: 'utf8' });
   const url = 'https://room.example.org';
-  const made = run('--join-secret-file', file, '--url', url, '--role', 'watcher', '--name', "Ada O'Neil", '--hours', '0.5');
+  const made = run(
+    '--join-secret-file',
+    file,
+    '--url',
+    url,
+    '--role',
+    'watcher',
+    '--name',
+    "Ada O'Neil",
+    '--hours',
+    '0.5',
+  );
   assert.equal(made.status, 0, made.stderr);
   const [, joinToken] = made.stdout.match(/^https:\/\/room\.example\.org\/#join=([\w.-]+)\n$/) ?? [];
   assert.deepEqual(await tokens.verify(joinToken), { ticket: { seat: 'watcher', name: "Ada O'Neil" } });

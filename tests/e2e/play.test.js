@@ -24,7 +24,8 @@ test('it says ready once, and leaves neither processes nor files when it is ende
 
   program.child.kill('SIGTERM');
   assert.deepEqual(await program.exited, [0, null]);
-  for (const pid of children) assert.equal(existsSync(`/proc/${pid}`), false, `process ${pid} is still there`);
+  for (const pid of children)
+    assert.equal(existsSync(`/proc/${pid}`), false, `process ${pid} is still there`);
   assert.deepEqual(readdirSync(folder), []);
 });
 
@@ -53,7 +54,9 @@ test('a program that is killed is started again, and says so', async (t) => {
   const health = async () => (await fetch(`http://127.0.0.1:${port}/healthz`).catch(() => undefined))?.json();
   for (const name of ['server', 'signaling']) {
     const pid = childrenOf(program.child.pid).find((child) =>
-      readFileSync(`/proc/${child}/cmdline`, 'utf8').includes(name === 'server' ? '\0serve\0' : 'signaling/main.js'),
+      readFileSync(`/proc/${child}/cmdline`, 'utf8').includes(
+        name === 'server' ? '\0serve\0' : 'signaling/main.js',
+      ),
     );
     process.kill(Number(pid), 'SIGKILL');
     await program.says(`play: ${name} was ended by SIGKILL; starting it again in 0.5 s (1 of 5)`);
@@ -73,7 +76,10 @@ test('a program that ends again and again is given up with its reason', async (t
   writeFileSync(broken, '#!/bin/sh\nexit 1\n', { mode: 0o755 });
   const program = startPlay(t, { port: await freePort(), env: { LICHTVELD: broken } });
   assert.deepEqual(await program.exited, [1, null]);
-  assert.match(program.output, /starting it again in 8 s \(5 of 5\)[^]*exit code 1, for the 6th time in a row; ending/);
+  assert.match(
+    program.output,
+    /starting it again in 8 s \(5 of 5\)[^]*exit code 1, for the 6th time in a row; ending/,
+  );
   assert.equal(program.stdout, '');
 });
 

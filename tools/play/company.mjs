@@ -37,7 +37,15 @@ export class Company {
 
   /** Starts a program and keeps it running. `onLine` gets each line that it writes. */
   start(name, command, args, onLine = (_line) => {}) {
-    this.#members.set(name, { command, args, onLine, restarts: 0, startedAt: 0, child: undefined, gone: undefined });
+    this.#members.set(name, {
+      command,
+      args,
+      onLine,
+      restarts: 0,
+      startedAt: 0,
+      child: undefined,
+      gone: undefined,
+    });
     this.#run(name);
   }
 
@@ -86,7 +94,9 @@ export class Company {
     }
     const pause = firstPauseMs * 2 ** member.restarts;
     member.restarts += 1;
-    this.#say(`${name} ${why}; starting it again in ${pause / 1000} s (${member.restarts} of ${maxRestarts})`);
+    this.#say(
+      `${name} ${why}; starting it again in ${pause / 1000} s (${member.restarts} of ${maxRestarts})`,
+    );
     await sleep(pause);
     if (!this.#finishing) this.#run(name);
   }

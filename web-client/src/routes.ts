@@ -38,13 +38,14 @@ export class Routes {
   }
 
   #advice(): string {
-    if (this.#own.size === 0) return 'Look whether a setting or an extension of this browser keeps WebRTC back';
+    if (this.#own.size === 0)
+      return 'Look whether a setting or an extension of this browser keeps WebRTC back';
     if (this.#theirs.size === 0)
-      return 'Who runs the room should look into the render server\'s log: it did not answer, or has no address';
+      return "Who runs the room should look into the render server's log: it did not answer, or has no address";
     if (this.#own.has('relay') || this.#theirs.has('relay'))
       return 'Even the relay (TURN) did not help: who runs the room should look whether it runs and which ports are open';
     return (
-      'A router or firewall is in between: try another network, such as a phone\'s. ' +
+      "A router or firewall is in between: try another network, such as a phone's. " +
       'Who runs the room can let everybody in with a TURN server'
     );
   }

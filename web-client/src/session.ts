@@ -187,7 +187,8 @@ export class Session {
         }
         this.events.onData(data);
       },
-      onClose: () => this.#lost(this.#opened ? 'the connection to the render server was lost' : this.#noWay()),
+      onClose: () =>
+        this.#lost(this.#opened ? 'the connection to the render server was lost' : this.#noWay()),
     });
   }
 

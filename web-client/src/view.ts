@@ -176,7 +176,11 @@ export class View {
     const { state } = this.#standing;
     const { reason, retryAt } = this.#sceneTrouble ?? this.#standing;
     const seconds = Math.max(0, Math.ceil(((retryAt ?? 0) - performance.now()) / 1000));
-    const { short, title = '', text = '' } = (this.#sceneTrouble ? withoutScene : words[state])(reason, seconds);
+    const {
+      short,
+      title = '',
+      text = '',
+    } = (this.#sceneTrouble ? withoutScene : words[state])(reason, seconds);
     setText('state-text', state === 'live' ? this.#live(short) : short);
     setText('trouble-title', title);
     setText('trouble-text', text);

@@ -4,7 +4,15 @@ import { joinToken, StaySecret } from '../src/ticket';
 
 test('the token is what follows #join=, and nothing else is one', () => {
   assert.equal(joinToken('#join=aa.b-b.c_c'), 'aa.b-b.c_c');
-  for (const fragment of ['', '#', '#join=', '#join=a b', '#token=a', '#join=a&b=c', `#join=${'a'.repeat(2001)}`])
+  for (const fragment of [
+    '',
+    '#',
+    '#join=',
+    '#join=a b',
+    '#token=a',
+    '#join=a&b=c',
+    `#join=${'a'.repeat(2001)}`,
+  ])
     assert.equal(joinToken(fragment), undefined, fragment);
 });
 
