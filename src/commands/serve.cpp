@@ -29,7 +29,7 @@ constexpr auto budget_a_map = 33ms;
 constexpr std::size_t cubes_of_players = 2;  // as stream's protocol has it
 
 struct ServeOptions {
-  std::string scene, signaling, token_file, bind, public_ip;
+  std::string scene, signaling, token_file, ca_file, bind, public_ip;
   std::string udp_port;  // PORT or FIRST-LAST; empty: any
   double rate = 30;
   std::string method = "links";
@@ -160,6 +160,7 @@ void serve(ServeOptions options) {
   const std::stop_callback on_stop(stop.get_token(), [&] { room.stop(); });
   server = std::make_unique<stream::Server>(stream::ServerOptions{
       .signaling = options.signaling,
+      .ca_file = options.ca_file,
       .token = token,
       .scene_hash = files::sha256_of_file(options.scene),
       .bind_address = options.bind,
@@ -193,10 +194,15 @@ void add_serve(CLI::App& application) {
   auto* command = application.add_subcommand("serve", "Light a room for players: the render server");
   const auto options = std::make_shared<ServeOptions>();
   command->add_option("--scene", options->scene, "The scene, .glb or .gltf")->required();
-  command->add_option("--signaling", options->signaling, "The signaling server, ws://HOST:PORT/server")
+  command
+      ->add_option("--signaling", options->signaling,
+                   "The signaling server, ws://HOST:PORT/server or wss://...")
       ->required();
   command->add_option("--token-file", options->token_file, "A file with the token that signaling knows")
       ->required();
+  command->add_option(
+      "--ca-file", options->ca_file,
+      "A PEM file with the authorities that may sign signaling's certificate (default: the system's)");
   command->add_option("--bind", options->bind, "The address that WebRTC binds to (default: every address)");
   command->add_option(
       "--udp-port", options->udp_port,

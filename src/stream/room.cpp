@@ -15,15 +15,16 @@ namespace asio = boost::asio;
 Server::Room::Room(ServerOptions options)
     : options_(std::move(options)),
       session_(options_.places, options_.mover),
-      signaling_(io_, {SignalingUrl::parse(options_.signaling), options_.token, options_.scene_hash},
-                 {.connected = [this] { count([](auto& s) { s.signaling_connected = true; }); },
-                  .lost = [this] { signaling_lost(); },
-                  .message = [this](std::string_view text) { signal(text); },
-                  .refused =
-                      [this](std::string why) {
-                        const std::lock_guard lock(mutex_);
-                        refused_ = std::move(why);
-                      }}) {
+      signaling_(
+          io_, {SignalingUrl::parse(options_.signaling), options_.token, options_.scene_hash, options_.ca_file},
+          {.connected = [this] { count([](auto& s) { s.signaling_connected = true; }); },
+           .lost = [this] { signaling_lost(); },
+           .message = [this](std::string_view text) { signal(text); },
+           .refused =
+               [this](std::string why) {
+                 const std::lock_guard lock(mutex_);
+                 refused_ = std::move(why);
+               }}) {
   ice_.bind_address = options_.bind_address;
   ice_.ports = {options_.first_udp_port, options_.last_udp_port};
   tick();

@@ -9,13 +9,17 @@
 #include <boost/asio/redirect_error.hpp>
 #include <boost/asio/use_awaitable.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
+#include <boost/beast/core/tcp_stream.hpp>
 #include <boost/beast/http/string_body.hpp>
+#include <boost/beast/ssl/ssl_stream.hpp>
 #include <boost/beast/websocket.hpp>
+#include <boost/beast/websocket/ssl.hpp>
 #include <charconv>
 #include <stdexcept>
 #include <utility>
 
 #include "limits.hpp"
+#include "tls.hpp"
 
 namespace lichtveld::stream {
 
@@ -36,21 +40,31 @@ constexpr auto taken_pause = 2000ms;
 // A connection that has lasted this long starts the back-off anew.
 constexpr auto settled_time = 5s;
 
+// What happens when one side speaks TLS and the other does not tells little by itself.
+std::string in_words(const boost::system::error_code& error, bool secure) {
+  if (secure && error.category() == asio::error::get_ssl_category())
+    return error.message() + "; does it speak TLS? Without it the address starts with ws://";
+  if (!secure && (error == http::error::bad_version || error == http::error::end_of_stream))
+    return error.message() + "; does it speak TLS? Then the address starts with wss://";
+  return error.message();
+}
+
 }  // namespace
 
 SignalingUrl SignalingUrl::parse(std::string_view url) {
   const auto bad = [&](const std::string& why) {
     return std::invalid_argument("signaling URL '" + std::string(url) + "': " + why +
-                                 "; it looks like ws://127.0.0.1:8080/server");
+                                 "; it looks like ws://127.0.0.1:8080/server or wss://room.example.org/server");
   };
-  constexpr std::string_view scheme = "ws://";
-  if (!url.starts_with(scheme)) throw bad("it has to start with ws://");
+  const bool secure = url.starts_with("wss://");
+  if (!secure && !url.starts_with("ws://")) throw bad("it has to start with ws:// or wss://");
+  const std::string_view scheme = secure ? "wss://" : "ws://";
   if (std::any_of(url.begin(), url.end(), [](char c) { return c <= ' ' || c > '~'; }))
     throw bad("only printable ASCII without spaces is allowed");
   const std::string_view rest = url.substr(scheme.size());
   const std::size_t slash = std::min(rest.find('/'), rest.size());
   std::string_view authority = rest.substr(0, slash);
-  std::string_view host, port = "80";
+  std::string_view host, port = secure ? "443" : "80";
   if (authority.starts_with('[')) {
     const std::size_t end = authority.find(']');
     if (end == std::string_view::npos) throw bad("'[' has no ']'");
@@ -69,11 +83,24 @@ SignalingUrl SignalingUrl::parse(std::string_view url) {
     if (error != std::errc() || end != port.data() + port.size() || number < 1 || number > 65535)
       throw bad("the port has to be a number from 1 to 65535");
   }
-  return {std::string(host), std::string(port), slash < rest.size() ? std::string(rest.substr(slash)) : "/"};
+  return {secure, std::string(host), std::string(port),
+          slash < rest.size() ? std::string(rest.substr(slash)) : "/"};
+}
+
+std::string SignalingUrl::authority() const {
+  return (host.find(':') == std::string::npos ? host : "[" + host + "]") + ":" + port;
+}
+
+std::string SignalingUrl::text() const {
+  return (secure ? "wss://" : "ws://") + authority() + target;
 }
 
 Signaling::Signaling(asio::io_context& io, Options options, Events events)
     : io_(io), options_(std::move(options)), events_(std::move(events)), retry_(io) {
+  if (options_.url.secure)
+    tls_ = make_tls_context(options_.ca_file);
+  else if (!options_.ca_file.empty())
+    throw std::invalid_argument("--ca-file is for wss://, and signaling is at " + options_.url.text());
   asio::co_spawn(io_, stay_connected(), asio::detached);
 }
 
@@ -97,32 +124,34 @@ std::chrono::milliseconds Signaling::pause_after(Ending ending) {
 }
 
 asio::awaitable<Signaling::Ending> Signaling::connect_once() {
-  const auto& [host, port, target] = options_.url;
+  const auto& url = options_.url;
+  const std::string where = "signaling " + url.text();
+  const auto certificate_fault = std::make_shared<std::string>();
   websocket::response_type response;
   try {
-    auto socket = std::make_shared<Socket>(io_);
-    auto& tcp = beast::get_lowest_layer(*socket);
+    beast::tcp_stream tcp(io_);
     tcp.expires_after(connect_time);
     asio::ip::tcp::resolver resolver(io_);
-    const auto addresses = co_await resolver.async_resolve(host, port, asio::use_awaitable);
+    const auto addresses = co_await resolver.async_resolve(url.host, url.port, asio::use_awaitable);
     co_await tcp.async_connect(addresses, asio::use_awaitable);
     tcp.socket().set_option(asio::ip::tcp::no_delay(true));
-    tcp.expires_never();  // from here on the WebSocket keeps the time
-
-    socket->set_option(websocket::stream_base::timeout{connect_time, silence_time, true});
-    socket->set_option(websocket::stream_base::decorator([&](websocket::request_type& request) {
-      request.set(http::field::authorization, "Bearer " + options_.token);
-      request.set("Lichtveld-Scene", options_.scene_hash);
-    }));
-    socket->read_message_max(limits::signaling_read);
-    const std::string authority = host.find(':') == std::string::npos ? host : "[" + host + "]";
-    co_await socket->async_handshake(response, authority + ":" + port, target, asio::use_awaitable);
-    co_await receive(std::move(socket));
+    if (url.secure) {
+      beast::ssl_stream<beast::tcp_stream> tls(std::move(tcp), *tls_);
+      tls.set_verify_callback(CertificateCheck(url.host, certificate_fault));
+      SSL_set_tlsext_host_name(tls.native_handle(), url.host.c_str());
+      co_await tls.async_handshake(asio::ssl::stream_base::client, asio::use_awaitable);
+      co_await converse(std::move(tls), response);
+    } else {
+      co_await converse(std::move(tcp), response);
+    }
     co_return Ending::lost;
   } catch (const boost::system::system_error& error) {
-    const std::string where = "signaling ws://" + host + ":" + port + target;
+    if (!certificate_fault->empty()) {
+      spdlog::error("{}: {}; trying again", where, *certificate_fault);
+      co_return Ending::lost;
+    }
     if (error.code() != websocket::error::upgrade_declined) {
-      spdlog::warn("{}: {}; trying again", where, error.code().message());
+      spdlog::warn("{}: {}; trying again", where, in_words(error.code(), url.secure));
       co_return Ending::lost;
     }
     const std::string answer =
@@ -145,12 +174,38 @@ asio::awaitable<Signaling::Ending> Signaling::connect_once() {
   }
 }
 
+template <typename Below>
+asio::awaitable<void> Signaling::converse(Below below, websocket::response_type& response) {
+  auto socket = std::make_shared<websocket::stream<Below>>(std::move(below));
+  beast::get_lowest_layer(*socket).expires_never();  // from here on the WebSocket keeps the time
+  socket->set_option(websocket::stream_base::timeout{connect_time, silence_time, true});
+  socket->set_option(websocket::stream_base::decorator([&](websocket::request_type& request) {
+    request.set(http::field::authorization, "Bearer " + options_.token);
+    request.set("Lichtveld-Scene", options_.scene_hash);
+  }));
+  socket->read_message_max(limits::signaling_read);
+  co_await socket->async_handshake(response, options_.url.authority(), options_.url.target,
+                                   asio::use_awaitable);
+  co_await receive(std::move(socket));
+}
+
+template <typename Socket>
 asio::awaitable<void> Signaling::receive(std::shared_ptr<Socket> socket) {
   const auto start = std::chrono::steady_clock::now();
-  socket_ = socket;
+  const auto line = std::make_shared<Line>();
+  line->write = [this, socket, weak = std::weak_ptr(line)](std::shared_ptr<std::string> text) {
+    socket->text(true);
+    // The handler owns socket and text: the queue may be another connection's by the time it runs.
+    socket->async_write(asio::buffer(*text),
+                        [this, socket, text, weak](boost::system::error_code error, std::size_t) {
+                          written(weak.lock(), error);
+                        });
+  };
+  line->close = [socket] { beast::get_lowest_layer(*socket).close(); };
+  line_ = line;
   queue_.clear();
   waiting_ = 0;
-  spdlog::info("signaling {}:{} connected", options_.url.host, options_.url.port);
+  spdlog::info("{} connected", options_.url.text());
   events_.connected();
 
   boost::system::error_code error;
@@ -165,21 +220,20 @@ asio::awaitable<void> Signaling::receive(std::shared_ptr<Socket> socket) {
     }
   }
   // Ends a write that still waits: it holds the socket and this is the only place that reads from it.
-  beast::get_lowest_layer(*socket).close();
-  socket_.reset();
+  line->close();
+  line_.reset();
   queue_.clear();
   waiting_ = 0;
   if (std::chrono::steady_clock::now() - start > settled_time) failures_ = 0;
-  spdlog::warn("signaling {}:{} lost ({}); running sessions go on", options_.url.host, options_.url.port,
-               error.message());
+  spdlog::warn("{} lost ({}); running sessions go on", options_.url.text(), error.message());
   events_.lost();
 }
 
 void Signaling::send(std::string text) {
-  if (!socket_) return;
+  if (!line_) return;
   if (waiting_ >= limits::signaling_queue) {
     // Its other end takes nothing: the connection is as good as lost, and the reader will say so.
-    beast::get_lowest_layer(*socket_).close();
+    line_->close();
     return;
   }
   waiting_ += text.size();
@@ -188,17 +242,15 @@ void Signaling::send(std::string text) {
 }
 
 void Signaling::write_next() {
-  socket_->text(true);
-  // The handler owns socket and text: the queue may be another connection's by the time it runs.
-  auto text = std::make_shared<std::string>(queue_.front());
-  socket_->async_write(asio::buffer(*text),
-                       [this, socket = socket_, text](boost::system::error_code error, std::size_t) {
-                         if (error || socket != socket_)
-                           return;  // the reader sees the same error and ends the connection
-                         waiting_ -= queue_.front().size();
-                         queue_.pop_front();
-                         if (!queue_.empty()) write_next();
-                       });
+  line_->write(std::make_shared<std::string>(queue_.front()));
+}
+
+void Signaling::written(const std::shared_ptr<Line>& line, boost::system::error_code error) {
+  // The reader sees the same error and ends the connection.
+  if (error || !line || line != line_) return;
+  waiting_ -= queue_.front().size();
+  queue_.pop_front();
+  if (!queue_.empty()) write_next();
 }
 
 }  // namespace lichtveld::stream

@@ -7,9 +7,9 @@
 
 #include <boost/asio/awaitable.hpp>
 #include <boost/asio/io_context.hpp>
+#include <boost/asio/ssl/context.hpp>
 #include <boost/asio/steady_timer.hpp>
-#include <boost/beast/core/tcp_stream.hpp>
-#include <boost/beast/websocket/stream.hpp>
+#include <boost/beast/websocket/rfc6455.hpp>
 #include <chrono>
 #include <deque>
 #include <functional>
@@ -21,11 +21,15 @@
 namespace lichtveld::stream {
 
 struct SignalingUrl {
+  bool secure = false;  // wss
   std::string host, port, target;
 
-  // ws://HOST[:PORT][/PATH]; an IPv6 address stands in brackets; the port is 80 where none is given. Throws
-  // std::invalid_argument.
+  // ws:// or wss://HOST[:PORT][/PATH]; an IPv6 address stands in brackets; the port is 80 or 443 where none is
+  // given. Throws std::invalid_argument.
   static SignalingUrl parse(std::string_view url);
+
+  std::string authority() const;  // HOST:PORT as in a URL
+  std::string text() const;
 };
 
 class Signaling {
@@ -34,6 +38,7 @@ class Signaling {
     SignalingUrl url;
     std::string token;       // printable ASCII without spaces
     std::string scene_hash;  // hex
+    std::string ca_file;     // of wss, PEM; empty: the system's authorities
   };
   struct Events {
     std::function<void()> connected, lost;
@@ -41,7 +46,8 @@ class Signaling {
     std::function<void(std::string why)> refused;  // the token is wrong: no further try is made
   };
 
-  // Starts at once. The object must live until the io_context has stopped running.
+  // Starts at once. The object must live until the io_context has stopped running. Throws std::invalid_argument
+  // for a ca_file that is none, or has no use.
   Signaling(boost::asio::io_context& io, Options options, Events events);
   Signaling(const Signaling&) = delete;
   Signaling& operator=(const Signaling&) = delete;
@@ -53,12 +59,20 @@ class Signaling {
   std::size_t waiting() const { return waiting_; }
 
  private:
-  using Socket = boost::beast::websocket::stream<boost::beast::tcp_stream>;
+  // A WebSocket that is open, with or without TLS below it.
+  struct Line {
+    std::function<void(std::shared_ptr<std::string> text)> write;  // ends with a call of written()
+    std::function<void()> close;
+  };
   enum class Ending { lost, token_refused, room_taken };
 
   boost::asio::awaitable<void> stay_connected();
   boost::asio::awaitable<Ending> connect_once();
+  template <typename Below>  // what carries the WebSocket
+  boost::asio::awaitable<void> converse(Below below, boost::beast::websocket::response_type& response);
+  template <typename Socket>
   boost::asio::awaitable<void> receive(std::shared_ptr<Socket> socket);
+  void written(const std::shared_ptr<Line>& line, boost::system::error_code error);
   void write_next();
   std::chrono::milliseconds pause_after(Ending ending);
 
@@ -66,10 +80,11 @@ class Signaling {
   Options options_;
   Events events_;
   boost::asio::steady_timer retry_;
-  std::shared_ptr<Socket> socket_;  // set while connected
-  std::deque<std::string> queue_;   // its front is being written
-  std::size_t waiting_ = 0;         // bytes in queue_
-  unsigned failures_ = 0;           // in a row
+  std::shared_ptr<boost::asio::ssl::context> tls_;  // of wss
+  std::shared_ptr<Line> line_;                      // set while connected
+  std::deque<std::string> queue_;                   // its front is being written
+  std::size_t waiting_ = 0;                         // bytes in queue_
+  unsigned failures_ = 0;                           // in a row
   std::minstd_rand random_{std::random_device{}()};
 };
 

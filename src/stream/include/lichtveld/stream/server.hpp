@@ -16,7 +16,8 @@
 namespace lichtveld::stream {
 
 struct ServerOptions {
-  std::string signaling;  // ws://HOST[:PORT]/server
+  std::string signaling;  // ws:// or wss://HOST[:PORT]/server
+  std::string ca_file;    // PEM, the authorities that wss trusts; empty: the system's
   std::string token;      // the bearer token that signaling asks for: printable ASCII without spaces
   // The scene file's SHA-256 as 64 lower-case hex digits, sent to signaling for the greeting.
   std::string scene_hash;
