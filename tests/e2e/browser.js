@@ -1,6 +1,7 @@
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
-import { mkdirSync } from 'node:fs';
+import { mkdirSync, mkdtempSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { chromium } from 'playwright-core';
 import { PNG } from 'pngjs';
@@ -20,10 +21,18 @@ function findBrowser() {
   throw new Error('no browser found: install chromium, or name one with CHROMIUM=/path/to/it');
 }
 
-/** A browser that WebRTC on this machine alone works in. */
-export function launchBrowser() {
+/**
+ * A browser that WebRTC on this machine alone works in.
+ * @param {string[]} [prefix]  words before its command: in which network it runs
+ */
+export async function launchBrowser(prefix = []) {
+  const folder = mkdtempSync(join(tmpdir(), 'lichtveld-browser-'));
+  const executablePath = join(folder, 'browser');
+  writeFileSync(executablePath, `#!/bin/sh\nexec ${[...prefix, findBrowser()].join(' ')} "$@"\n`, {
+    mode: 0o755,
+  });
   return chromium.launch({
-    executablePath: findBrowser(),
+    executablePath,
     args: [
       '--no-sandbox',
       '--disable-quic',
@@ -41,8 +50,8 @@ export function launchBrowser() {
 /**
  * A browser that ends with the test. Its pages come from `open`, each with a fresh profile; none may ever throw.
  */
-export async function launch(t) {
-  const browser = await launchBrowser();
+export async function launch(t, prefix = []) {
+  const browser = await launchBrowser(prefix);
   const players = [];
   t.after(async () => {
     await browser.close();

@@ -23,7 +23,7 @@ export async function freePort() {
 }
 
 /** A program whose output is kept for the report of a failure, and which ends with the test. */
-class Program {
+export class Program {
   /** Standard output and error together, and the former alone. */
   output = '';
   stdout = '';
@@ -71,16 +71,20 @@ export async function play(t, serveOptions = quick, scene = scenePath) {
 
 /**
  * Signaling alone; `serve` starts a render server for it.
- * @param {{scene?: string, options?: string[]}} [more]  another scene file for the pages, more arguments
+ * @param {{scene?: string, options?: string[], host?: string, servePrefix?: string[]}} [more]  another scene file for the
+ *   pages, more arguments, the address to listen on, words before the render server's command
  */
-export async function signaling(t, { scene = scenePath, options = [] } = {}) {
+export async function signaling(
+  t,
+  { scene = scenePath, options = [], host = '127.0.0.1', servePrefix = [] } = {},
+) {
   const port = await freePort();
   const folder = mkdtempSync(join(tmpdir(), 'lichtveld-e2e-'));
   const token = join(folder, 'token');
   writeFileSync(token, 'a-secret-for-tests\n', { mode: 0o600 });
   const client = join(root, 'web-client/dist');
   const files = ['--token-file', token, '--client', client, '--scene', scene, ...options];
-  const args = [join(root, 'signaling/main.js'), '--port', String(port), ...files];
+  const args = [join(root, 'signaling/main.js'), '--host', host, '--port', String(port), ...files];
   const relay = async () => {
     const program = new Program(t, 'signaling', process.execPath, args);
     await program.says('signaling listens on');
@@ -93,16 +97,19 @@ export async function signaling(t, { scene = scenePath, options = [] } = {}) {
     '--scene',
     scenePath,
     '--signaling',
-    `ws://127.0.0.1:${port}/server`,
+    `ws://${host}:${port}/server`,
     '--token-file',
     token,
   ];
   return {
-    url: `http://127.0.0.1:${port}`,
+    url: `http://${host}:${port}`,
     /** The running relay, and a way to start another in its place. */
     first,
     relay,
-    serve: (...more) =>
-      new Program(t, 'server', executable, [...serveArgs, '--bind', '127.0.0.1', ...quick, ...more]),
+    serve: (...more) => {
+      const bind = host === '127.0.0.1' ? ['--bind', host] : [];
+      const [command, ...words] = [...servePrefix, executable];
+      return new Program(t, 'server', command, [...words, ...serveArgs, ...bind, ...quick, ...more]);
+    },
   };
 }

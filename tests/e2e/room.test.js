@@ -137,7 +137,9 @@ test('a room of two players and a watcher', async (t) => {
   await t.test('/metrics shows what each stage of a map and each pass has taken', async () => {
     const seconds = (text, label, name) =>
       Number(
-        new RegExp(`^lichtveld_server_${label}_seconds_total\\{${label}="${name}"\\} (.+)$`, 'm').exec(text)?.[1],
+        new RegExp(`^lichtveld_server_${label}_seconds_total\\{${label}="${name}"\\} (.+)$`, 'm').exec(
+          text,
+        )?.[1],
       );
     const wanted = [
       ...['input', 'place', 'update', 'encode', 'send'].map((name) => ['stage', name]),
@@ -175,22 +177,25 @@ test('a room of two players and a watcher', async (t) => {
     await heir.until('the cube is inherited', (known) => known.role.cube === 2, inheritanceMs);
   });
 
-  await t.test('a page that is left and comes back from the cache plays on without being loaded', async () => {
-    const player = await browser.open(url);
-    const { role } = await player.lit();
-    const maps = (await player.knows()).mapsReceived;
-    // Headless browsers have no such cache: the events are those that it sends.
-    const send = (type) => dispatchEvent(new PageTransitionEvent(type, { persisted: true }));
-    await player.page.evaluate(send, 'pagehide');
-    await stays.until(
-      'one has left',
-      ({ role: { watchers } }) => watchers === role.watchers - 1,
-      inheritanceMs,
-    );
-    await player.page.evaluate(send, 'pageshow');
-    await player.until('lit again', ({ state, mapsReceived }) => state === 'live' && mapsReceived > maps);
-    assert.deepEqual((await player.knows()).role, role);
-  });
+  await t.test(
+    'a page that is left and comes back from the cache plays on without being loaded',
+    async () => {
+      const player = await browser.open(url);
+      const { role } = await player.lit();
+      const maps = (await player.knows()).mapsReceived;
+      // Headless browsers have no such cache: the events are those that it sends.
+      const send = (type) => dispatchEvent(new PageTransitionEvent(type, { persisted: true }));
+      await player.page.evaluate(send, 'pagehide');
+      await stays.until(
+        'one has left',
+        ({ role: { watchers } }) => watchers === role.watchers - 1,
+        inheritanceMs,
+      );
+      await player.page.evaluate(send, 'pageshow');
+      await player.until('lit again', ({ state, mapsReceived }) => state === 'live' && mapsReceived > maps);
+      assert.deepEqual((await player.knows()).role, role);
+    },
+  );
 
   assert.deepEqual([...first.errors, ...second.errors], []);
 });

@@ -34,7 +34,9 @@ export class SceneFile {
 
   /** The rest place [x, y, z] of the movable nodes, in the file's order. */
   restPlaces() {
-    return this.#json.nodes.filter((node) => node.extras?.movable).map((node) => node.translation ?? [0, 0, 0]);
+    return this.#json.nodes
+      .filter((node) => node.extras?.movable)
+      .map((node) => node.translation ?? [0, 0, 0]);
   }
 
   /**

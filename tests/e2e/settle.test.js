@@ -38,5 +38,9 @@ test('in a bright room, too, light settles within three maps of the last step', 
   t.diagnostic(`${maps} maps after a step`);
   assert.ok(maps > 1 && maps <= mostMaps, `${maps} maps`);
   await player.page.waitForTimeout(reportMs);
-  assert.equal((await mapsComputed(player, url)) - before, maps, 'nothing is computed once light has settled');
+  assert.equal(
+    (await mapsComputed(player, url)) - before,
+    maps,
+    'nothing is computed once light has settled',
+  );
 });
