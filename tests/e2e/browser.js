@@ -31,10 +31,7 @@ const quiet = [
   '--disable-sync',
 ];
 /** Loopback is left out of WebRTC's addresses, and local ones are hidden behind names, unless asked otherwise. */
-const onOneMachine = [
-  '--allow-loopback-in-peer-connection',
-  '--disable-features=WebRtcHideLocalIpsWithMdns',
-];
+const onOneMachine = ['--allow-loopback-in-peer-connection', '--disable-features=WebRtcHideLocalIpsWithMdns'];
 
 /**
  * A browser that WebRTC on this machine alone works in, or as people have it in a network of its own.

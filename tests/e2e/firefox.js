@@ -22,7 +22,15 @@ export function firefoxMissing() {
 
 /** A screen that nobody sees: WebGL wants one. @returns {Promise<string>} its name */
 async function screen(t) {
-  const xvfb = new Program(t, 'Xvfb', 'Xvfb', ['-displayfd', '1', '-nolisten', 'tcp', '-screen', '0', '1280x800x24']);
+  const xvfb = new Program(t, 'Xvfb', 'Xvfb', [
+    '-displayfd',
+    '1',
+    '-nolisten',
+    'tcp',
+    '-screen',
+    '0',
+    '1280x800x24',
+  ]);
   await xvfb.says('\n');
   return `:${xvfb.stdout.trim()}`;
 }

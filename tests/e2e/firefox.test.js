@@ -31,11 +31,17 @@ test('a player in Chromium and one in Firefox move in one room', { skip: firefox
     assert.equal(role.cube, cube + 1, 'cubes in order of joining');
     for (let i = 0; i < steps; ++i) await mover.page.keyboard.press('ArrowUp');
     for (const player of players)
-      await player.until(`cube ${cube + 1} has moved`, (known) => known.places[cube].y > places[cube].y + 0.3);
+      await player.until(
+        `cube ${cube + 1} has moved`,
+        (known) => known.places[cube].y > places[cube].y + 0.3,
+      );
     const after = await Promise.all(players.map((player) => player.settledMap()));
     assert.deepEqual(after[0].data, after[1].data, 'both see the same light');
     for (const [n, map] of after.entries())
-      assert.ok(changedShare(before[n], map, changeTolerance) > changed, 'the light has changed with the cube');
+      assert.ok(
+        changedShare(before[n], map, changeTolerance) > changed,
+        'the light has changed with the cube',
+      );
   }
 
   await firefox.screenshot('firefox');
