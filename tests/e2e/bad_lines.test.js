@@ -55,7 +55,7 @@ test('50 ms and 1 % loss: the newest map is seldom older than four intervals', a
     loss: 0.01,
   });
   const home = net.home('cone');
-  home.block(internet, port);
+  home.block(`ip daddr ${internet} udp dport ${port}`);
   const player = await (await launch(t, home.prefix)).open(url);
   await player.lit(40_000);
 

@@ -1,8 +1,9 @@
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
-import { mkdirSync, mkdtempSync, writeFileSync } from 'node:fs';
+import { mkdirSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
+import { setTimeout as sleep } from 'node:timers/promises';
 import { chromium } from 'playwright-core';
 import { PNG } from 'pngjs';
 import { root } from './programs.js';
@@ -21,30 +22,37 @@ function findBrowser() {
   throw new Error('no browser found: install chromium, or name one with CHROMIUM=/path/to/it');
 }
 
+const quiet = [
+  '--no-sandbox',
+  '--disable-quic',
+  '--no-first-run',
+  '--disable-background-networking',
+  '--disable-component-update',
+  '--disable-sync',
+];
+/** Loopback is left out of WebRTC's addresses, and local ones are hidden behind names, unless asked otherwise. */
+const onOneMachine = [
+  '--allow-loopback-in-peer-connection',
+  '--disable-features=WebRtcHideLocalIpsWithMdns',
+];
+
 /**
- * A browser that WebRTC on this machine alone works in.
+ * A browser that WebRTC on this machine alone works in, or as people have it in a network of its own.
  * @param {string[]} [prefix]  words before its command: in which network it runs
  */
 export async function launchBrowser(prefix = []) {
+  if (prefix.length === 0)
+    return chromium.launch({ executablePath: findBrowser(), args: [...quiet, ...onOneMachine] });
+  // Playwright starts one file, and speaks with it through pipes that pass through.
   const folder = mkdtempSync(join(tmpdir(), 'lichtveld-browser-'));
   const executablePath = join(folder, 'browser');
-  writeFileSync(executablePath, `#!/bin/sh\nexec ${[...prefix, findBrowser()].join(' ')} "$@"\n`, {
-    mode: 0o755,
-  });
-  return chromium.launch({
-    executablePath,
-    args: [
-      '--no-sandbox',
-      '--disable-quic',
-      '--no-first-run',
-      '--disable-background-networking',
-      '--disable-component-update',
-      '--disable-sync',
-      // Loopback is left out of WebRTC's addresses, and local ones are hidden behind names, unless asked otherwise.
-      '--allow-loopback-in-peer-connection',
-      '--disable-features=WebRtcHideLocalIpsWithMdns',
-    ],
-  });
+  const command = [...prefix, findBrowser()].map((word) => `'${word}'`).join(' ');
+  writeFileSync(executablePath, `#!/bin/sh\nexec ${command} "$@"\n`, { mode: 0o755 });
+  try {
+    return await chromium.launch({ executablePath, args: quiet });
+  } finally {
+    rmSync(folder, { recursive: true });
+  }
 }
 
 /**
@@ -71,7 +79,7 @@ export async function launch(t, prefix = []) {
   };
 }
 
-/** One page in the room. */
+/** One page in the room, Playwright's or Puppeteer's. */
 export class Player {
   /** What the page's scripts threw and nobody caught, and what its console reports as errors. */
   thrown = [];
@@ -108,7 +116,7 @@ export class Player {
       if (accepts(known)) return known;
       if (Date.now() > end)
         throw new Error(`waited in vain until ${what}; the page knows ${JSON.stringify(known)}`);
-      await this.page.waitForTimeout(50);
+      await sleep(50);
     }
   }
 
@@ -137,7 +145,7 @@ export class Player {
     const end = since + 20 * quietMs;
     while (Date.now() - since < quietMs) {
       if (Date.now() > end) throw new Error('the light map does not come to rest');
-      await this.page.waitForTimeout(200);
+      await sleep(200);
       const map = await this.map();
       if (Buffer.compare(map.data, last.data) !== 0) since = Date.now();
       last = map;
@@ -149,7 +157,7 @@ export class Player {
   async press(key, done) {
     for (let i = 0; i < 200; ++i) {
       await this.page.keyboard.press(key);
-      await this.page.waitForTimeout(60);
+      await sleep(60);
       if (done(await this.knows())) return;
     }
     throw new Error(`pressing ${key} leads nowhere; the page knows ${JSON.stringify(await this.knows())}`);

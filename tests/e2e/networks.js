@@ -10,8 +10,11 @@ export const internet = '203.0.113.1';
 
 const nowhere = '203.0.113.254';
 
-/** What a router does with the port of a connection that leaves: keeps it for all destinations, or never does. */
-const nats = { cone: 'masquerade', symmetric: 'masquerade fully-random' };
+/**
+ * What a router does with the port of a connection that leaves: keeps it for all destinations, or never does. A 1:1 NAT,
+ * as rented machines are behind, lets everything in besides.
+ */
+const nats = { cone: 'masquerade', symmetric: 'masquerade fully-random', oneToOne: 'masquerade' };
 
 const run = (command, ...args) =>
   execFileSync(command, args, { stdio: ['ignore', 'pipe', 'pipe'], encoding: 'utf8' });
@@ -22,7 +25,9 @@ const within = (namespace, command) => run('nsenter', `--net=/run/netns/${namesp
 
 /** The internet: a switch, and our own place at it. */
 export function makeInternet(t) {
-  ip('link', 'add', 'internet', 'type', 'bridge');
+  // Without an address of its own a bridge has the lowest of its ports', and those who know the old one lose us when a
+  // home is plugged in.
+  ip('link', 'add', 'internet', 'address', '02:00:00:00:00:01', 'type', 'bridge');
   ip('addr', 'add', `${internet}/24`, 'dev', 'internet');
   ip('link', 'set', 'internet', 'up');
   // Private addresses lead nowhere, as on the internet: without a way there, coturn ends a session that asks for one.
@@ -59,6 +64,10 @@ function makeHome(t, number, nat) {
      echo 1 >/proc/sys/net/ipv4/ip_forward
      nft -f - <<END
      table ip home {
+       chain arriving {
+         type nat hook prerouting priority -100
+         ${nat === 'oneToOne' ? `iifname wan dnat to 10.0.${number}.2` : ''}
+       }
        chain outward { type nat hook postrouting priority 100; oifname wan ${nats[nat]}; }
        chain own {
          # Dropped before the connection is known: an answer to an uninvited packet would take the port of the line that is
@@ -70,6 +79,7 @@ function makeHome(t, number, nat) {
          type filter hook forward priority 0; policy drop;
          iifname lan accept
          ct state established,related accept
+         ${nat === 'oneToOne' ? 'ct status dnat accept' : ''}
        }
      }
 END`,
@@ -83,9 +93,8 @@ END`,
     address,
     /** Words to put before a command that runs on the machine at home. */
     prefix: ['nsenter', `--net=/run/netns/${machine}`],
-    /** Nothing goes to this UDP port any more. */
-    block: (destination, port) =>
-      within(router, `nft insert rule ip home inward ip daddr ${destination} udp dport ${port} drop`),
+    /** What passes no more, in nft's words, e.g. `udp dport 40000`. */
+    block: (packets) => within(router, `nft insert rule ip home inward ${packets} drop`),
     /** The line to the internet, cut and mended. */
     cut: () => within(router, 'nft insert rule ip home inward drop'),
     mend: () =>

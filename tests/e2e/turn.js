@@ -9,13 +9,14 @@ const turnSecret = 'a-turn-secret-for-tests';
 /**
  * A coturn on this machine, STUN and TURN.
  * @param {string} address  to listen on and to relay from
+ * @param {string[]} [others]  to listen on, too: kinds of NATs are told apart by two (RFC 5780)
  */
-export async function startTurn(t, address) {
+export async function startTurn(t, address, others = []) {
   const folder = mkdtempSync(join(tmpdir(), 'lichtveld-turn-'));
   t.after(() => rmSync(folder, { recursive: true, force: true }));
   const configuration = join(folder, 'turnserver.conf');
   const lines = [
-    `listening-ip=${address}`,
+    ...[address, ...others].map((listening) => `listening-ip=${listening}`),
     `relay-ip=${address}`,
     'listening-port=3478',
     'realm=lichtveld',
