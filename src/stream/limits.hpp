@@ -34,7 +34,7 @@ inline constexpr double moves_per_second = 60, moves_burst = 30;
 inline constexpr std::size_t queued_messages = 64;
 
 // Offers that the room answers: each makes a certificate and sockets.
-inline constexpr double offers_per_second = 10, offers_burst = 64;
+inline constexpr double offers_per_second = 20, offers_burst = 64;
 
 // Bytes; a browser's offer of one data channel has about 700, a candidate about 120, a session's secret 22.
 inline constexpr std::size_t description = 16 * 1024, candidate = 512, mid = 32, peer_id = 128, session = 64,

@@ -1,0 +1,79 @@
+import nodeDataChannel from 'node-datachannel';
+import { WebSocket } from 'ws';
+
+/** A client of protocol v1 that is no browser, written from docs/protocol.md: joins, and joins again when it has to. */
+export class CrowdMember {
+  /** The newest role message. */
+  role;
+  #socket;
+  #connection;
+  #channel;
+  /** Candidates that have overtaken the answer. */
+  #early = [];
+  #server;
+
+  /** @param {string} url  of the page  @param {() => void} onRole */
+  constructor(url, onRole = () => {}) {
+    this.onRole = onRole;
+    this.#socket = new WebSocket(`${url.replace('http', 'ws')}/client`);
+    this.#socket.on('error', () => {});
+    this.#socket.on('message', (data) => this.#take(JSON.parse(String(data))));
+  }
+
+  /** Ends everything, as a closed page does. */
+  leave() {
+    this.#socket.removeAllListeners('message');
+    this.#socket.close();
+    this.#dropConnection();
+  }
+
+  #send(message) {
+    this.#socket.send(JSON.stringify({ id: this.#server, ...message }));
+  }
+
+  #take(message) {
+    if (message.type === 'welcome' && message.server) {
+      this.#server = message.server;
+      this.#join();
+    } else if (message.type === 'waiting') {
+      this.role = undefined;
+      this.#dropConnection();
+    } else if (message.type === 'answer') {
+      this.#connection?.setRemoteDescription(message.description, 'answer');
+      for (const early of this.#early.splice(0)) this.#addCandidate(early);
+    } else if (message.type === 'candidate') {
+      if (this.#connection?.remoteDescription()) this.#addCandidate(message);
+      else this.#early.push(message);
+    } else if (message.type === 'role') {
+      this.role = message;
+      this.onRole();
+    }
+  }
+
+  #addCandidate({ candidate, mid }) {
+    try {
+      this.#connection?.addRemoteCandidate(candidate, mid);
+    } catch {
+      // The connection has just ended, or needs no more of them.
+    }
+  }
+
+  #join() {
+    this.#dropConnection();
+    const connection = new nodeDataChannel.PeerConnection('member', {
+      iceServers: [],
+      bindAddress: '127.0.0.1',
+    });
+    this.#connection = connection;
+    connection.onLocalDescription((description) => this.#send({ type: 'offer', description }));
+    connection.onLocalCandidate((candidate, mid) => this.#send({ type: 'candidate', candidate, mid }));
+    // Messages that nobody takes would fill the library's queue, and then block its threads.
+    this.#channel = connection.createDataChannel('lichtveld');
+    this.#channel.onMessage(() => {});
+  }
+
+  #dropConnection() {
+    this.#connection?.close();
+    this.#connection = undefined;
+  }
+}
