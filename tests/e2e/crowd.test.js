@@ -95,6 +95,7 @@ test('a thousand joins and leaves: nothing grows', async (t) => {
         settle(joined);
       };
       const member = new CrowdMember(url, () => end(true));
+      member.onRefused = () => setTimeout(() => end(false), 100);
       const patience = setTimeout(() => end(false), 1500);
     });
   const programs = [server.child.pid, first.child.pid];

@@ -5,6 +5,8 @@ import { WebSocket } from 'ws';
 export class CrowdMember {
   /** The newest role message. */
   role;
+  /** Called when the relay does not let it in. */
+  onRefused = () => {};
   #socket;
   #connection;
   #channel;
@@ -16,7 +18,7 @@ export class CrowdMember {
   constructor(url, onRole = () => {}) {
     this.onRole = onRole;
     this.#socket = new WebSocket(`${url.replace('http', 'ws')}/client`);
-    this.#socket.on('error', () => {});
+    this.#socket.on('error', () => this.onRefused());
     this.#socket.on('message', (data) => this.#take(JSON.parse(String(data))));
   }
 

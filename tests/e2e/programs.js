@@ -85,6 +85,7 @@ export async function signaling(
   const client = join(root, 'web-client/dist');
   const files = ['--token-file', token, '--client', client, '--scene', scene, ...options];
   const args = [join(root, 'signaling/main.js'), '--host', host, '--port', String(port), ...files];
+  const secure = options.includes('--tls-cert') ? 's' : '';
   const relay = async () => {
     const program = new Program(t, 'signaling', process.execPath, args);
     await program.says('signaling listens on');
@@ -97,12 +98,14 @@ export async function signaling(
     '--scene',
     scenePath,
     '--signaling',
-    `ws://${host}:${port}/server`,
+    `ws${secure}://${host}:${port}/server`,
     '--token-file',
     token,
   ];
   return {
-    url: `http://${host}:${port}`,
+    url: `http${secure}://${host}:${port}`,
+    /** The arguments that name signaling's files. */
+    files,
     /** The running relay, and a way to start another in its place. */
     first,
     relay,
