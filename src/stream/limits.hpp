@@ -8,7 +8,7 @@ namespace lichtveld::stream::limits {
 
 using namespace std::chrono_literals;
 
-// Peers at a time, those still connecting included; each costs a UDP port, some threads' time and up to 256 KiB
+// Peers at a time, those still connecting included; each costs a UDP port, some threads' time and up to 64 KiB
 // of send buffer. Offers beyond it are refused.
 inline constexpr std::size_t peers = 64;
 

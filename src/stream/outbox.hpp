@@ -26,7 +26,7 @@ struct SentCounts {
 };
 
 // Sends only while the channel's queue is empty, so that at most one chunk and one places message wait there: a
-// map in transit is finished, and the one after it is the newest of that moment. (SCTP's own send buffer, 256
+// map in transit is finished, and the one after it is the newest of that moment. (SCTP's own send buffer, 64
 // KiB, lies beyond that queue and cannot be seen from here.)
 class Outbox {
  public:

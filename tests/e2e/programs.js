@@ -56,10 +56,18 @@ export class Program {
   }
 }
 
-/** The room's programs as `./dev play` runs them, from the moment of their start. */
-export function startPlay(t, { port, serveOptions = quick, scene = scenePath, env = {} }) {
-  const args = ['--port', String(port), '--scene', scene, '--', ...serveOptions];
-  return new Program(t, 'play', process.execPath, [join(root, 'tools/play.mjs'), ...args], env);
+/**
+ * The room's programs as `./dev play` runs them, from the moment of their start.
+ * @param {{port: number, options?: string[], serveOptions?: string[], scene?: string, env?: object, prefix?: string[]}} more
+ *   options of play itself; prefix: words before its command
+ */
+export function startPlay(
+  t,
+  { port, options = [], serveOptions = quick, scene = scenePath, env = {}, prefix = [] },
+) {
+  const args = ['--port', String(port), '--scene', scene, ...options, '--', ...serveOptions];
+  const [command, ...words] = [...prefix, process.execPath, join(root, 'tools/play.mjs')];
+  return new Program(t, 'play', command, [...words, ...args], env);
 }
 
 /** The whole room, ready to be joined. */

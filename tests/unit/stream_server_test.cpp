@@ -124,7 +124,7 @@ TEST_F(RoomTest, SlowClientSkipsToTheNewestAndNobodyElseNotices) {
   ASSERT_TRUE(slow.wait(
       [](const auto& s) { return !s.maps.empty() && s.maps.back() == as_binary(map_bytes(200'000, count)); },
       10s));
-  // What SCTP's 256 KiB swallowed, the one in transit, and the newest.
+  // What SCTP's 64 KiB swallowed, the one in transit, and the newest.
   EXPECT_LE(slow.state().maps.size(), 4u);
   EXPECT_EQ(slow.state().maps[0], as_binary(map_bytes(200'000, 1))) << "a map in transit is finished";
   EXPECT_EQ(server->statistics().maps_skipped, count - slow.state().maps.size());

@@ -44,7 +44,7 @@ export function publicAddress(told) {
   if (!found)
     throw new Error(
       `this machine's own addresses (${own.join(', ') || 'none'}) are private: give the one by which the internet ` +
-        'reaches it with --public-ip; a rented machine’s provider shows it',
+        'reaches it with --public-ip; its provider shows it',
     );
   return { address: found, ours: true, own };
 }

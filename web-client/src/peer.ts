@@ -22,7 +22,7 @@ export interface PeerOptions {
 export class Peer {
   /** The render server's id at the relay; another one after the relay or the server's line to it was new. */
   server: string;
-  readonly routes = new Routes();
+  readonly routes: Routes;
   readonly #connection: RTCPeerConnection;
   readonly #channel: RTCDataChannel;
   /** Candidates may overtake the answer; they are of no use before it. */
@@ -34,6 +34,9 @@ export class Peer {
     private readonly events: PeerEvents,
   ) {
     this.server = server;
+    this.routes = new Routes(
+      iceServers.some(({ urls }) => [urls].flat().some((url) => /^turns?:/i.test(url))),
+    );
     this.#connection = new RTCPeerConnection({ iceServers });
     this.#channel = this.#connection.createDataChannel(channelLabel);
     this.#channel.binaryType = 'arraybuffer';

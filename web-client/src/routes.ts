@@ -17,6 +17,9 @@ export function kindOf(line: string): Kind | undefined {
 }
 
 export class Routes {
+  /** Whether there is a TURN server to ask. */
+  constructor(private readonly hasTurn: boolean) {}
+
   readonly #own = new Set<Kind>();
   readonly #theirs = new Set<Kind>();
 
@@ -44,6 +47,8 @@ export class Routes {
       return "Who runs the room should look into the render server's log: it did not answer, or has no address";
     if (this.#own.has('relay') || this.#theirs.has('relay'))
       return 'Even the relay (TURN) did not help: who runs the room should look whether it runs and which ports are open';
+    if (this.hasTurn)
+      return "The room's relay (TURN) did not answer: who runs the room should look whether it runs and its port is open";
     return (
       "A router or firewall is in between: try another network, such as a phone's. " +
       'Who runs the room can let everybody in with a TURN server'

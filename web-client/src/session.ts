@@ -72,7 +72,7 @@ export class Session {
   #quiet = false;
   /** The last channel went silent, and no relay has been reached since. */
   #cutOff = false;
-  /** Why the last attempt failed; empty once the relay has answered. */
+  /** Why the last attempt failed; empty once one has not. */
   #trouble = '';
   #heardAt = 0;
   #retryTimer: ReturnType<typeof setTimeout> | undefined;
@@ -119,6 +119,7 @@ export class Session {
         return this.#greet(message);
       case 'waiting':
         this.#server = undefined;
+        this.#trouble = '';
         this.#backoff.reset();
         if (!this.#peer) this.events.onState('waiting', { reason: '' });
         return;
@@ -132,7 +133,6 @@ export class Session {
   async #greet(welcome: Welcome): Promise<void> {
     this.#greeted = true;
     this.#cutOff = false;
-    this.#trouble = '';
     this.#server = welcome.server;
     this.#iceServers = welcome.iceServers ?? [];
     this.events.onRelay(true);
@@ -169,12 +169,13 @@ export class Session {
     this.#offeredTo = server;
     this.#opened = this.#quiet = false;
     this.#heardAt = performance.now();
-    this.events.onState('joining', { reason: '' });
+    this.events.onState('joining', { reason: this.#trouble });
     const options = { server, iceServers: this.#iceServers, session: this.#secret.get() };
     this.#peer = new Peer(options, {
       onSignal: (message) => this.#signaling?.send(message),
       onOpen: () => {
         this.#opened = true;
+        this.#trouble = '';
         this.#heardAt = performance.now();
         this.events.onState('live', { reason: '' });
       },

@@ -23,11 +23,8 @@ interface Standing extends Trouble {
 const words: Readonly<
   Record<State, (reason: string, s: number) => { short: string; title?: string; text?: string }>
 > = {
-  connecting: (reason) =>
-    reason
-      ? { short: 'Connecting', title: 'Connection lost', text: `${sentence(reason)} Trying again now.` }
-      : { short: 'Connecting' },
-  joining: () => ({ short: 'Joining' }),
+  connecting: (reason) => ({ short: 'Connecting', ...again(reason) }),
+  joining: (reason) => ({ short: 'Joining', ...again(reason) }),
   live: () => ({ short: 'Live' }),
   silent: () => ({ short: 'No word from the render server' }),
   waiting: (reason) => ({
@@ -73,6 +70,10 @@ const withoutScene = (reason: string, s: number) => ({
   title: 'The room cannot be loaded',
   text: `${sentence(reason)} Trying again in ${s} s.`,
 });
+
+/** While an attempt is made: why the one before it failed. */
+const again = (reason: string) =>
+  reason ? { title: 'Connection lost', text: `${sentence(reason)} Trying again now.` } : {};
 
 /** What became of one's own cube. */
 const lostCube = {

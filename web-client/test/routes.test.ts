@@ -13,7 +13,7 @@ test('the kind of a candidate is read from its line', () => {
 });
 
 test('a failure names the kinds of both sides and what to try', () => {
-  const routes = new Routes();
+  const routes = new Routes(false);
   routes.addOwn(host);
   routes.addOwn(reflexive);
   routes.addTheirs(`v=0\r\na=${host}\r\n`);
@@ -24,13 +24,14 @@ test('a failure names the kinds of both sides and what to try', () => {
 });
 
 test('the advice fits what is missing', () => {
-  const advice = (own: string[], theirs: string[]): string => {
-    const routes = new Routes();
+  const advice = (own: string[], theirs: string[], hasTurn = false): string => {
+    const routes = new Routes(hasTurn);
     own.forEach((line) => routes.addOwn(line));
     theirs.forEach((line) => routes.addTheirs(line));
     return routes.describeFailure();
   };
   assert.match(advice([], [host]), /no address at all.*keeps WebRTC back/);
   assert.match(advice([host], []), /the server no address at all.*did not answer/);
-  assert.match(advice([host, relay], [host]), /Even the relay/);
+  assert.match(advice([host, relay], [host], true), /Even the relay/);
+  assert.match(advice([host], [host], true), /relay \(TURN\) did not answer/);
 });
