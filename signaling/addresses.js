@@ -1,34 +1,50 @@
 import ipaddr from 'ipaddr.js';
 import proxyAddr from 'proxy-addr';
-
-/** Bits of an IPv6 address that stand for one customer: whoever has one address there has them all (RFC 6177). */
-const customerBits = 64;
+import { InputError } from './input.js';
 
 /**
- * Who comes from an address, for counting: IPv4 as it is, also when it is written as IPv6; of IPv6 the network.
- * @param {string | undefined} address
- * @returns {string}
+ * What counts as one address. A home or a rented machine has a whole /64 of IPv6, so that is one; IPv4 that comes by an
+ * IPv6 socket is IPv4.
+ * @param {string | undefined} text
+ * @returns {string | undefined} undefined for what is no address
  */
-export function visitorOf(address) {
-  if (!address || !ipaddr.isValid(address)) return 'unknown';
-  const parsed = ipaddr.process(address);
-  if (parsed.kind() === 'ipv4') return parsed.toString();
-  const bytes = parsed.toByteArray().fill(0, customerBits / 8);
-  return `${ipaddr.fromByteArray(bytes).toString()}/${customerBits}`;
+export function addressKey(text) {
+  if (text === undefined || !ipaddr.isValid(text)) return undefined;
+  const address = ipaddr.process(text);
+  // Link-local neighbours share one prefix, and cannot choose their addresses from afar.
+  if (address instanceof ipaddr.IPv4 || address.range() === 'linkLocal') return address.toString();
+  return `${new ipaddr.IPv6([...address.parts.slice(0, 4), 0, 0, 0, 0])}/64`;
 }
 
 /**
- * Finds the address that a request really comes from.
- * @param {string[]} proxies  addresses, networks (10.0.0.0/8) or names such as `loopback`, whose X-Forwarded-For is
- *   believed; throws TypeError for what is none of these
+ * Whom connections and requests come from. Of the proxies that are trusted, and of nobody else, X-Forwarded-For is
+ * believed.
+ * @param {string[]} [trusted]  addresses, ranges like 10.0.0.0/8, or `loopback`
  */
-export function createAddressFinder(proxies) {
-  const trusts = proxies.length > 0 ? proxyAddr.compile(proxies) : () => false;
+export function createAddresses(trusted = []) {
+  /** @type {(address: string, hop: number) => boolean} */
+  let isTrusted = () => false;
+  try {
+    if (trusted.length > 0) isTrusted = proxyAddr.compile(trusted);
+  } catch {
+    throw new InputError(
+      `--trust-proxy wants addresses like 10.0.0.5, ranges like 10.0.0.0/8, or loopback, not '${trusted.join("', '")}'`,
+    );
+  }
+  /** @type {(socket: {remoteAddress?: string | undefined}) => string} */
+  const ofSocket = (socket) => addressKey(socket.remoteAddress) ?? 'unknown';
   return {
-    /** Whether connections from this address carry the requests of others. @param {string | undefined} address */
-    isProxy: (address) => address !== undefined && trusts(address, 0),
-    visitorOf,
+    ofSocket,
+    /** @param {{remoteAddress?: string | undefined}} socket */
+    isProxy: ({ remoteAddress }) => remoteAddress !== undefined && isTrusted(remoteAddress, 0),
     /** @param {import('node:http').IncomingMessage} request */
-    visitor: (request) => visitorOf(proxyAddr(request, trusts)),
+    ofRequest(request) {
+      const { remoteAddress } = request.socket;
+      if (remoteAddress === undefined || !isTrusted(remoteAddress, 0)) return ofSocket(request.socket);
+      // A proxy that says nothing, or no address ("unknown"), is taken for the client itself: bounded, if too tightly.
+      return addressKey(proxyAddr(request, isTrusted)) ?? ofSocket(request.socket);
+    },
   };
 }
+
+/** @typedef {ReturnType<typeof createAddresses>} Addresses */

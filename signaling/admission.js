@@ -1,5 +1,4 @@
 import { createHash, timingSafeEqual } from 'node:crypto';
-import { STATUS_CODES } from 'node:http';
 
 /** @type {(text: string) => Buffer} */
 const digest = (text) => createHash('sha256').update(text).digest();
@@ -22,7 +21,7 @@ export function hasGoodOrigin(request, allowedOrigins) {
   const { origin, host } = request.headers;
   if (origin === undefined || allowedOrigins.includes(origin)) return true;
   try {
-    return new URL(origin).host === host;
+    return new URL(origin).host === host?.toLowerCase();
   } catch {
     return false;
   }
@@ -35,21 +34,4 @@ export function hasGoodOrigin(request, allowedOrigins) {
 export function sceneHash(request) {
   const value = request.headers['lichtveld-scene'];
   return typeof value === 'string' && /^[0-9a-f]{64}$/i.test(value) ? value.toLowerCase() : undefined;
-}
-
-/**
- * Answers an upgrade with an HTTP error and ends the connection.
- * @param {import('node:stream').Duplex} socket
- * @param {number} status
- * @param {string} error  for people
- */
-export function refuseUpgrade(socket, status, error) {
-  const body = JSON.stringify({ error });
-  socket.on('error', () => socket.destroy());
-  // It stays half open and has no timeout after an upgrade: who never ends its side would keep its place.
-  socket.once('finish', () => socket.destroy());
-  socket.end(
-    `HTTP/1.1 ${status} ${STATUS_CODES[status]}\r\nConnection: close\r\nContent-Type: application/json\r\n` +
-      `Content-Length: ${Buffer.byteLength(body)}\r\n\r\n${body}`,
-  );
 }

@@ -8,38 +8,47 @@ export class Connection {
   #socket;
   #limits;
   #metrics;
+  #onAbuse;
   #bucket;
   #refusals = 0;
   #unansweredPings = 0;
+  #owedOffers = 0;
 
   /**
    * @param {import('ws').WebSocket} socket
    * @param {{id: string, role: 'server' | 'client', limits: import('./limits.js').Limits,
-   *          metrics: import('./metrics.js').Metrics, onMessage: (text: string) => void, onClose: () => void}} options
+   *          metrics: import('./metrics.js').Metrics, onMessage: (text: string) => void, onClose: () => void,
+   *          onAbuse?: () => void}} options  `onAbuse`: it is ended for what it sent
    */
-  constructor(socket, { id, role, limits, metrics, onMessage, onClose }) {
+  constructor(socket, { id, role, limits, metrics, onMessage, onClose, onAbuse = () => {} }) {
     this.id = id;
     this.role = role;
     this.#socket = socket;
     this.#limits = limits;
     this.#metrics = metrics;
+    this.#onAbuse = onAbuse;
     this.#bucket = new TokenBucket(
       role === 'server' ? limits.serverRate : limits.clientRate,
       performance.now(),
     );
 
-    socket.on('pong', () => (this.#unansweredPings = 0));
+    socket.on('pong', () => {
+      this.#unansweredPings = 0;
+      this.#isTooMuch();
+    });
+    socket.on('ping', () => this.#isTooMuch());
     socket.on('close', onClose);
-    // ws closes a broken connection by itself, with the code that fits; what is left to do is to count it.
+    // ws closes a broken connection by itself, with the code that fits, and would then wait for half a minute.
     socket.on('error', (error) => {
       const tooLarge =
         /** @type {NodeJS.ErrnoException} */ (error).code === 'WS_ERR_UNSUPPORTED_MESSAGE_LENGTH';
       metrics.droppedConnections.inc({ reason: tooLarge ? 'oversized' : 'protocol_error' });
+      this.#endsSoon();
+      onAbuse();
     });
     socket.on('message', (data, isBinary) => {
-      if (socket.readyState !== socket.OPEN) return;
-      if (!this.#bucket.take(performance.now())) this.refuse('flood');
-      else if (isBinary) this.refuse('binary');
+      if (this.#isTooMuch()) return;
+      if (isBinary) this.refuse('binary');
       else onMessage(data.toString());
     });
   }
@@ -64,6 +73,19 @@ export class Connection {
     if (this.#socket.bufferedAmount > this.#limits.maxBufferedBytes) this.#drop('does_not_read');
   }
 
+  /** It has been told of a render server, and will make it an offer. */
+  owesOffer() {
+    this.#owedOffers = 1;
+  }
+
+  /** @returns {boolean} whether an offer that comes now is the one that it owed */
+  paysOffer() {
+    this.#owedOffers -= 1;
+    if (this.#owedOffers >= 0) return true;
+    this.#owedOffers = 0;
+    return false;
+  }
+
   /** Called once an interval: ends a peer that has stopped answering. */
   heartbeat() {
     if (this.#unansweredPings >= this.#limits.maxMissedPings) return this.#drop('silent');
@@ -77,10 +99,25 @@ export class Connection {
    */
   close(code, reason) {
     if (this.#socket.readyState !== this.#socket.OPEN) return;
-    if (code === 1008) this.#metrics.droppedConnections.inc({ reason: 'refusals' });
     this.#socket.close(code, reason);
-    // A peer that ignores the close would otherwise keep its place in the room.
+    this.#endsSoon();
+    if (code !== 1008) return;
+    this.#metrics.droppedConnections.inc({ reason: 'refusals' });
+    this.#socket.pause(); // what else it sends is not even parsed
+    this.#onAbuse();
+  }
+
+  /** A peer that ignores the close would otherwise keep its place in the room. */
+  #endsSoon() {
     setTimeout(() => this.#socket.terminate(), this.#limits.closeTimeoutMs).unref();
+  }
+
+  /** Counts what has come. @returns {boolean} whether it is to be ignored */
+  #isTooMuch() {
+    if (this.#socket.readyState !== this.#socket.OPEN) return true;
+    if (this.#bucket.take(performance.now())) return false;
+    this.refuse('flood');
+    return true;
   }
 
   /** @param {string} reason */

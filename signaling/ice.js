@@ -1,35 +1,55 @@
 import { createHmac } from 'node:crypto';
+import { InputError } from './input.js';
 
-/** host, [v6] or host:port after the scheme; TURN may name its transport (RFC 7064 and 7065). */
+// RFC 7064 and 7065: no slashes, no user; a transport is for TURN only.
 const pattern =
-  /^(?:(stuns?):(?:\[[\da-f:]+\]|[\w.-]+)(?::\d{1,5})?|(turns?):(?:\[[\da-f:]+\]|[\w.-]+)(?::\d{1,5})?(?:\?transport=(?:udp|tcp))?)$/i;
-
-/** @type {(url: string) => 'stun' | 'turn' | undefined} nothing for what is no address of either */
-export function kindOfIceServer(url) {
-  const match = pattern.exec(url);
-  return match && (match[1] ? 'stun' : 'turn');
-}
+  /^(stun|turns?):(\[[0-9a-fA-F:.]+\]|[A-Za-z0-9._-]+)(?::(\d{1,5}))?(\?transport=(?:udp|tcp))?$/;
 
 /**
- * The STUN and TURN servers that both sides find a way with, in the form that browsers take.
+ * The STUN and TURN servers that both sides are told of.
  *
- * TURN credentials are those of coturn's `use-auth-secret` (draft-uberti-behave-turn-rest): the user's name starts with
- * the time at which it expires, and the password is the name's HMAC-SHA1 by the secret that coturn shares with us.
+ * @typedef {{urls: string[], username?: string, credential?: string}} IceServer  as RTCPeerConnection takes it
  *
- * @param {{urls: string[], turnSecret?: string, lifetimeMs: number}} options  turnSecret: wanted for TURN
- * @returns {(id: string, now?: number) => object[]}  for the peer of this id; `now` in milliseconds since 1970
+ * @param {string[]} urls  of --ice-server
+ * @param {string} [secret]  that coturn has as static-auth-secret
+ * @param {number} [lifetimeSeconds]
+ * @param {() => number} [now]  milliseconds since 1970
  */
-export function createIceServers({ urls, turnSecret, lifetimeMs }) {
-  const stun = urls.filter((url) => kindOfIceServer(url) === 'stun');
-  const turn = urls.filter((url) => kindOfIceServer(url) === 'turn');
-  return (id, now = Date.now()) => {
-    const servers = [];
-    if (stun.length > 0) servers.push({ urls: stun });
-    if (turn.length > 0 && turnSecret) {
-      const username = `${Math.floor((now + lifetimeMs) / 1000)}:${id}`;
-      const credential = createHmac('sha1', turnSecret).update(username).digest('base64');
-      servers.push({ urls: turn, username, credential });
-    }
-    return servers;
+export function createIce(urls, secret, lifetimeSeconds = 3600, now = Date.now) {
+  for (const url of urls) {
+    const [, scheme, , port, transport] = url.match(pattern) ?? [];
+    if (!scheme || Number(port ?? 1) < 1 || Number(port ?? 1) > 65535 || (scheme === 'stun' && transport))
+      throw new InputError(
+        `--ice-server wants stun:HOST[:PORT], turn:HOST[:PORT][?transport=udp|tcp] or turns:.., not '${url}'`,
+      );
+  }
+  const stun = urls.filter((url) => url.startsWith('stun:'));
+  const turn = urls.filter((url) => !url.startsWith('stun:'));
+  if (turn.length > 0 && !secret)
+    throw new InputError(
+      `--ice-server ${turn[0]} wants --turn-secret-file too: the secret that is coturn's static-auth-secret`,
+    );
+  if (turn.length === 0 && secret)
+    throw new InputError('--turn-secret-file is for turn: servers, and none is given with --ice-server');
+
+  return {
+    /** After so long the render server, which stays, is told anew; undefined when nothing expires. */
+    refreshMs: turn.length > 0 ? (lifetimeSeconds * 1000) / 2 : undefined,
+    /**
+     * What a peer is told. The name says when it ends and whose it is, the password proves that we said so
+     * (draft-uberti-behave-turn-rest-00, which is coturn's use-auth-secret).
+     * @param {string} id
+     * @returns {IceServer[] | undefined}
+     */
+    serversFor(id) {
+      if (urls.length === 0) return undefined;
+      const servers = /** @type {IceServer[]} */ (stun.length > 0 ? [{ urls: stun }] : []);
+      if (turn.length === 0 || !secret) return servers;
+      const username = `${Math.floor(now() / 1000) + lifetimeSeconds}:${id}`;
+      const credential = createHmac('sha1', secret).update(username).digest('base64');
+      return [...servers, { urls: turn, username, credential }];
+    },
   };
 }
+
+/** @typedef {ReturnType<typeof createIce>} Ice */

@@ -1,84 +1,82 @@
 import { createSecretKey } from 'node:crypto';
 import { SignJWT, errors, jwtVerify } from 'jose';
 
-const audience = 'lichtveld';
-const algorithm = 'HS256';
-/** Characters of a secret: 32 random hex digits are 128 bits. */
+/** Fewer characters could be guessed by trying, with one token at hand. 32 hex digits are 128 bits. */
 export const minSecretLength = 32;
-/** Characters of a token; ours have some 200. */
-const maxTokenLength = 2000;
-const maxNameLength = 40;
-const subProtocolOfToken = 'lichtveld.join.';
 
-/** The sub-protocol that a page speaks when it shows a token, which it cannot do by a header. */
-export const subProtocol = 'lichtveld.signaling';
+const audience = 'lichtveld';
+const protocolPrefix = 'lichtveld.join.';
+/** What clients that show a token in this way ask for besides: the relay may answer with one that was asked for only. */
+export const protocolName = 'lichtveld.signaling';
+
+export const seats = Object.freeze(['player', 'watcher']);
+/** Characters of a name, the same for everybody who shows it. */
+export const maxNameLength = 40;
+
+// Control characters, halves of characters, line breaks, and what turns the direction of the text around it.
+const unprintable = /[\p{Cc}\p{Cs}\p{Zl}\p{Zp}\u202a-\u202e\u2066-\u2069]/u;
+
+/** @type {(name: unknown) => boolean} */
+export const isName = (name) =>
+  typeof name === 'string' && name.trim() !== '' && name.length <= maxNameLength && !unprintable.test(name);
 
 /**
- * What a token allows.
- * @typedef {{seat?: 'watcher', name?: string}} Ticket  without seat: a player
+ * Links into a room that is not open to everybody: each carries a JWT, signed with a secret that signaling alone knows.
+ *
+ * @typedef {{role: string, name?: string | undefined}} Pass
+ * @typedef {{pass: Pass, refused?: undefined} | {refused: string, pass?: undefined}} Verdict  `refused` for people
+ *
+ * @param {string} secret
+ * @param {import('./limits.js').Limits} limits
  */
+export function createJoinTokens(secret, { maxJoinTokenLength }) {
+  const key = createSecretKey(Buffer.from(secret, 'utf8'));
 
-/** @type {(name: unknown) => boolean} a name that does no harm in a log or on a page */
-export const isName = (name) =>
-  typeof name === 'string' &&
-  name.length > 0 &&
-  name.length <= maxNameLength &&
-  /^[\p{L}\p{N} ._'-]+$/u.test(name);
+  /** @type {(token: string | undefined) => Promise<Verdict>} */
+  const verify = async (token) => {
+    if (!token) return { refused: 'no token: ask whoever runs the room for a link' };
+    const foreign = { refused: 'the link is not for this room: ask whoever runs the room for another' };
+    if (token.length > maxJoinTokenLength) return foreign;
+    try {
+      const { payload } = await jwtVerify(token, key, {
+        algorithms: ['HS256'], // and nothing that the token itself asks for
+        audience,
+        requiredClaims: ['exp', 'role'],
+      });
+      const { role, name } = payload;
+      if (typeof role !== 'string' || !seats.includes(role)) return foreign;
+      if (name !== undefined && !isName(name)) return foreign;
+      return { pass: { role, name: /** @type {string | undefined} */ (name) } };
+    } catch (error) {
+      return error instanceof errors.JWTExpired
+        ? { refused: 'the link has expired: ask whoever runs the room for another' }
+        : foreign;
+    }
+  };
 
-/** The token that a request shows: in a page's sub-protocols, or as other programs do. */
-export function tokenOf(request) {
-  const protocols = String(request.headers['sec-websocket-protocol'] ?? '').split(',');
-  const shown = protocols.map((text) => text.trim()).find((text) => text.startsWith(subProtocolOfToken));
-  if (shown) return shown.slice(subProtocolOfToken.length);
-  return /^Bearer ([\w.-]+)$/i.exec(request.headers.authorization ?? '')?.[1];
+  return {
+    /**
+     * @param {Pass} pass
+     * @param {number} hours  that the link is good for
+     */
+    sign: ({ role, name }, hours) =>
+      new SignJWT({ role, ...(name !== undefined && { name }) })
+        .setProtectedHeader({ alg: 'HS256' })
+        .setAudience(audience)
+        .setIssuedAt()
+        .setExpirationTime(Math.floor(Date.now() / 1000 + hours * 3600))
+        .sign(key),
+    /** @param {import('node:http').IncomingMessage} request  a browser can put a token into the sub-protocols only */
+    ofRequest: (request) => verify(tokenOf(request)),
+  };
 }
 
-/** Signs and checks the tokens of links (JSON Web Tokens, RFC 7519). */
-export class JoinTokens {
-  #key;
+/** @typedef {ReturnType<typeof createJoinTokens>} JoinTokens */
 
-  /** @param {string} secret  at least minSecretLength characters */
-  constructor(secret) {
-    this.#key = createSecretKey(Buffer.from(secret));
-  }
-
-  /**
-   * @param {{role: 'player' | 'watcher', name?: string, hours: number}} options
-   * @returns {Promise<string>}
-   */
-  sign({ role, name, hours }) {
-    return new SignJWT({ role, ...(name !== undefined && { name }) })
-      .setProtectedHeader({ alg: algorithm })
-      .setAudience(audience)
-      .setIssuedAt()
-      .setExpirationTime(new Date(Date.now() + hours * 3600_000))
-      .sign(this.#key);
-  }
-
-  /**
-   * @param {string | undefined} token
-   * @returns {Promise<{ticket: Ticket} | {refused: string, text: string}>} `text` for people
-   */
-  async verify(token) {
-    if (!token) return { refused: 'no_token', text: 'it lets in those with a link only' };
-    const bad = { refused: 'bad_token', text: 'your link is not for this room' };
-    if (token.length > maxTokenLength) return bad;
-    try {
-      const options = { algorithms: [algorithm], audience, requiredClaims: ['exp', 'role'] };
-      const { payload } = await jwtVerify(token, this.#key, options);
-      const { role, name } = payload;
-      if (role !== 'player' && role !== 'watcher') return bad;
-      if (name !== undefined && !isName(name)) return bad;
-      return {
-        ticket: {
-          ...(role === 'watcher' && { seat: /** @type {const} */ ('watcher') }),
-          ...(name !== undefined && { name: String(name) }),
-        },
-      };
-    } catch (error) {
-      if (error instanceof errors.JWTExpired)
-        return { refused: 'stale_token', text: 'your link has expired' };
-      return bad;
-    }
-  }
+/** @type {(request: import('node:http').IncomingMessage) => string | undefined} */
+function tokenOf({ headers }) {
+  const [, bearer] = headers.authorization?.match(/^Bearer +(\S+)$/i) ?? [];
+  if (bearer) return bearer;
+  const protocols = (headers['sec-websocket-protocol'] ?? '').split(',').map((protocol) => protocol.trim());
+  return protocols.find((protocol) => protocol.startsWith(protocolPrefix))?.slice(protocolPrefix.length);
 }

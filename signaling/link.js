@@ -1,67 +1,69 @@
 #!/usr/bin/env node
-/** Makes a link by which somebody may join a room that was started with the same --join-secret-file. */
+/** Prints one link into a room that wants tokens. */
 import { parseArgs } from 'node:util';
-import { JoinTokens, isName } from './join_tokens.js';
-import { InputError, parsing, readJoinSecret } from './options.js';
+import { InputError, readSecret } from './input.js';
+import { createJoinTokens, isName, maxNameLength, minSecretLength, seats } from './join_tokens.js';
+import { defaultLimits } from './limits.js';
 
-const usage = `node signaling/link.js --join-secret-file FILE --url https://HOST[:PORT] [options]
-  --join-secret-file FILE   the secret that signaling was started with
-  --url URL                 where the page is
-  --role player|watcher     player: gets a cube when one is free; watcher: never does (player)
-  --name NAME               what the page and the log call him
-  --hours NUMBER            for which the link lets in; who is in may stay (24)
-Prints the link. Whoever has it may join: send it as you would a password.
-Exit codes: 0 fine, 2 bad usage or input.`;
+/** A year: a link that outlives its room cannot be taken back, but by another secret. */
+const maxHours = 8760;
 
-/** @type {(url: string) => boolean} */
-function isPage(url) {
+const usage = `node signaling/link.js --join-secret-file FILE --url https://room.example.org [options]
+  --join-secret-file FILE  the secret that signaling is started with
+  --url URL                the page
+  --role player|watcher    what its bearer may be (player)
+  --name NAME              shown to the others, 1 to ${maxNameLength} characters
+  --hours NUMBER           that it is good for (24), up to ${maxHours}
+Exit codes: 0 printed, 2 bad usage or input.`;
+
+async function main() {
+  let values;
   try {
-    return /^https?:$/.test(new URL(url).protocol);
-  } catch {
-    return false;
+    ({ values } = parseArgs({
+      options: {
+        'join-secret-file': { type: 'string' },
+        url: { type: 'string' },
+        role: { type: 'string', default: 'player' },
+        name: { type: 'string' },
+        hours: { type: 'string', default: '24' },
+        help: { type: 'boolean', short: 'h' },
+      },
+    }));
+  } catch (error) {
+    throw new InputError(`${error.message}\n${usage}`);
   }
-}
-
-function readOptions() {
-  const { values } = parsing(
-    () =>
-      parseArgs({
-        options: {
-          'join-secret-file': { type: 'string' },
-          url: { type: 'string' },
-          role: { type: 'string', default: 'player' },
-          name: { type: 'string' },
-          hours: { type: 'string', default: '24' },
-          help: { type: 'boolean', short: 'h' },
-        },
-      }),
-    usage,
-  );
-  if (values.help) {
-    console.log(usage);
-    process.exit(0);
-  }
-  const { 'join-secret-file': secretFile, url, role, name } = values;
-  if (!secretFile || !url)
-    throw new InputError(`--${secretFile ? 'url' : 'join-secret-file'} is missing\n${usage}`);
-  if (!isPage(url))
-    throw new InputError(`--url ${url} is no address of a page: it looks like https://room.example.org`);
-  if (role !== 'player' && role !== 'watcher')
-    throw new InputError(`--role is player or watcher, not '${role}'`);
+  if (values.help) return usage;
+  const { url: address, role, name, hours } = values;
+  const file = values['join-secret-file'];
+  if (!file) throw new InputError(`--join-secret-file is missing\n${usage}`);
+  if (!address) throw new InputError(`--url is missing\n${usage}`);
+  if (!seats.includes(role)) throw new InputError(`--role is player or watcher, not '${role}'`);
   if (name !== undefined && !isName(name))
-    throw new InputError(`--name has 1 to 40 letters, digits, spaces and any of . _ ' -; '${name}' has not`);
-  const hours = Number(values.hours);
-  if (!(hours > 0 && hours <= 24 * 365))
-    throw new InputError(`--hours wants a number up to ${24 * 365}, not '${values.hours}'`);
-  return { secret: readJoinSecret(secretFile), url, ticket: /** @type {const} */ ({ role, name, hours }) };
+    throw new InputError(`--name has 1 to ${maxNameLength} characters on one line, not '${name}'`);
+  if (!/^\d{1,4}(\.\d+)?$/.test(hours) || Number(hours) <= 0 || Number(hours) > maxHours)
+    throw new InputError(`--hours wants a number above 0 and up to ${maxHours}, not '${hours}'`);
+
+  const url = toUrl(address);
+  const tokens = createJoinTokens(readSecret('join-secret-file', file, minSecretLength), defaultLimits);
+  // A fragment: a browser keeps it to itself, so it gets into no server's or proxy's log.
+  url.hash = `join=${await tokens.sign({ role, name }, Number(hours))}`;
+  return url.href;
 }
 
-try {
-  const { secret, url, ticket } = readOptions();
-  const link = new URL('/', url);
-  link.hash = `join=${await new JoinTokens(secret).sign(ticket)}`;
-  console.log(link.href);
-} catch (error) {
+/** @type {(text: string) => URL} */
+function toUrl(text) {
+  let url;
+  try {
+    url = new URL(text);
+  } catch {
+    url = undefined;
+  }
+  if (!url || !['http:', 'https:'].includes(url.protocol) || url.username || url.password)
+    throw new InputError(`--url wants the page's address, such as https://room.example.org, not '${text}'`);
+  return url;
+}
+
+main().then(console.log, (error) => {
   console.error(`link: ${error instanceof InputError ? error.message : (error.stack ?? error)}`);
   process.exit(error instanceof InputError ? 2 : 1);
-}
+});

@@ -1,12 +1,11 @@
 /**
  * What may be relayed. A message is rebuilt from the fields named here, so nothing else ever passes.
  *
- *   client -> server {"id":PEER,"type":"offer","description":SDP,"session":SECRET}   session may be absent
- *                    {"id":PEER,"type":"rejoin","session":SECRET}
- *   server -> client {"id":PEER,"type":"answer","description":SDP}
- *   either way       {"id":PEER,"type":"candidate","candidate":LINE,"mid":MID}
- *   server -> client {"id":PEER,"type":"role","cube":0|1|2,"players":N,"watchers":M,"session":SECRET}
- *                    session may be absent
+ *   either way       {"id":PEER,"type":"offer"|"answer","description":SDP}; a client's offer may have "session":SECRET,
+ *                    and the relay adds "seat" and "name" to it (room.js)
+ *                    {"id":PEER,"type":"candidate","candidate":LINE,"mid":MID}
+ *   client -> server {"id":PEER,"type":"rejoin","session":SECRET}
+ *   server -> client {"id":PEER,"type":"role","cube":0|1|2,"players":N,"watchers":M}, and maybe "session":SECRET
  *   server -> relay  {"type":"work","stages":[{"name":NAME,"runs":N,"seconds":S},...],"passes":[...],
  *                     "counts":[{"name":NAME,"value":N},...]}
  *                    what the render server's work has taken since its start, shown in /metrics
@@ -26,29 +25,30 @@ const isText = (value, max) => typeof value === 'string' && value.length > 0 && 
 const isCount = (value, max) => Number.isInteger(value) && Number(value) >= 0 && Number(value) <= max;
 
 /** @type {(value: unknown, limits: import('./limits.js').Limits) => boolean} */
-const isSecret = (value, limits) => isText(value, limits.maxSessionLength) && /^[\w-]+$/.test(String(value));
-/** @type {(value: unknown, limits: import('./limits.js').Limits) => boolean} */
-const isAbsentOrSecret = (value, limits) => value === undefined || isSecret(value, limits);
-
-/** Which side may send what; the rest goes either way. */
-const onlyFrom = { offer: 'client', rejoin: 'client', answer: 'server', role: 'server', work: 'server' };
+const isSession = (value, limits) =>
+  isText(value, limits.maxSessionLength) && /^[A-Za-z0-9_-]+$/.test(String(value));
 
 /** The fields of each type of message, each with its check. */
 const fieldsOf = {
-  offer: { description: (v, limits) => isText(v, limits.maxDescriptionLength), session: isAbsentOrSecret },
-  rejoin: { session: isSecret },
+  offer: { description: (v, limits) => isText(v, limits.maxDescriptionLength) },
   answer: { description: (v, limits) => isText(v, limits.maxDescriptionLength) },
   candidate: {
     candidate: (v, limits) => isText(v, limits.maxCandidateLength),
     mid: (v, limits) => isText(v, limits.maxMidLength),
   },
+  rejoin: { session: isSession },
   role: {
     cube: (v) => isCount(v, 2),
     players: (v, limits) => isCount(v, limits.maxPeople),
     watchers: (v, limits) => isCount(v, limits.maxPeople),
-    session: isAbsentOrSecret,
   },
 };
+
+/** Those that may be missing. */
+const optionalFieldsOf = { offer: { session: isSession }, role: { session: isSession } };
+
+/** Types that only one side may send. */
+const senderOf = { rejoin: 'client', role: 'server', work: 'server' };
 
 /** @type {(value: unknown) => boolean} */
 const isAnyCount = (value) => isCount(value, Number.MAX_SAFE_INTEGER);
@@ -99,14 +99,19 @@ export function parseMessage(text, sender, limits) {
   if (typeof json !== 'object' || json === null || Array.isArray(json)) return { refused: 'malformed' };
   const known = json.type === 'work' || (typeof json.type === 'string' && Object.hasOwn(fieldsOf, json.type));
   if (!known) return { refused: 'unknown_type' };
-  if ((onlyFrom[json.type] ?? sender) !== sender) return { refused: 'forbidden_type' };
+  if ((senderOf[json.type] ?? sender) !== sender) return { refused: 'forbidden_type' };
   if (json.type === 'work') return parseWork(json, limits);
   if (!isText(json.id, maxIdLength)) return { refused: 'malformed' };
 
   const message = { id: json.id, type: json.type };
   for (const [name, accepts] of Object.entries(fieldsOf[json.type])) {
     if (!accepts(json[name], limits)) return { refused: 'malformed' };
-    if (json[name] !== undefined) message[name] = json[name];
+    message[name] = json[name];
+  }
+  for (const [name, accepts] of Object.entries(optionalFieldsOf[json.type] ?? {})) {
+    if (json[name] === undefined) continue;
+    if (!accepts(json[name], limits)) return { refused: 'malformed' };
+    message[name] = json[name];
   }
   return { message };
 }

@@ -3,8 +3,9 @@ import { Counter, Gauge, Registry } from 'prom-client';
 /**
  * The counters of one signaling server, and what the render server says of its work, in a registry of their own.
  * @param {import('./room.js').Room} room
+ * @param {import('./address_gate.js').AddressGate<any, any>} gate
  */
-export function createMetrics(room) {
+export function createMetrics(room, gate) {
   const registry = new Registry();
   const registers = [registry];
   /** @type {(name: string, help: string, labelNames?: string[]) => Counter} */
@@ -23,6 +24,9 @@ export function createMetrics(room) {
 
   gauge('clients', 'Clients connected now.', () => room.clientCount);
   gauge('server_connected', '1 while a render server is connected, else 0.', () => Number(room.hasServer));
+
+  gauge('tcp_connections', 'TCP connections now, WebSockets included.', () => gate.connections);
+  gauge('addresses', 'Addresses that are remembered for their rates.', () => gate.addresses);
 
   /** @type {(of: string, label: string) => (times: import('./messages.js').Times) => void} */
   const workOf = (of, label) => {
@@ -49,7 +53,10 @@ export function createMetrics(room) {
   });
   return {
     registry,
-    /** What the render server's work has taken; nothing is shown while none is there. */
+    /**
+     * What the render server's work has taken; nothing is shown while none is there.
+     * @param {Omit<import('./messages.js').Work, 'type'>} [work]
+     */
     showWork: ({ stages, passes, counts } = { stages: [], passes: [], counts: [] }) => {
       showStages(stages);
       showPasses(passes);
@@ -58,6 +65,7 @@ export function createMetrics(room) {
     },
     connections: counter('connections_total', 'Connections accepted, by role.', ['role']),
     refusedConnections: counter('refused_connections_total', 'Connections refused, by reason.', ['reason']),
+    refusedRequests: counter('refused_requests_total', 'Requests refused, by reason.', ['reason']),
     refusedMessages: counter('refused_messages_total', 'Messages refused, by reason.', ['reason']),
     droppedConnections: counter('dropped_connections_total', 'Connections that we ended, by reason.', [
       'reason',

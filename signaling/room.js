@@ -1,17 +1,18 @@
 /**
  * Who is in the room and who may talk to whom. Pure: every call answers with the messages to deliver.
  *
- * @typedef {{to: string, message: object}} Delivery
+ * @typedef {{to: string, message: {type: string} & Record<string, any>}} Delivery
+ * @typedef {import('./join_tokens.js').Pass} Pass
  */
 export class Room {
-  /** @type {{id: string, sceneSha256?: string} | undefined} */
+  /** @type {{id: string, sceneSha256?: string | undefined} | undefined} */
   #server;
-  /** @type {Map<string, import('./join_tokens.js').Ticket>} */
+  /** @type {Map<string, {seat?: 'watcher', name?: string}>} */
   #clients = new Map();
   #iceServersFor;
 
-  /** @param {(id: string) => object[]} [iceServersFor]  what this peer is given to find a way with */
-  constructor(iceServersFor = () => []) {
+  /** @param {(id: string) => import('./ice.js').IceServer[] | undefined} [iceServersFor]  what a peer is told of */
+  constructor(iceServersFor = () => undefined) {
     this.#iceServersFor = iceServersFor;
   }
 
@@ -31,26 +32,27 @@ export class Room {
    */
   serverJoins(id, sceneSha256) {
     this.#server = { id, sceneSha256 };
-    return [...this.greetServer(), ...[...this.#clients.keys()].map((client) => this.#welcome(client))];
+    return [...this.renewIceServers(), ...[...this.#clients.keys()].map((client) => this.#welcome(client))];
   }
 
   /**
-   * The render server's greeting; once more before the credentials in it expire.
+   * The render server stays longer than what it is told of STUN and TURN servers is good for. Clients need it once.
    * @returns {Delivery[]}
    */
-  greetServer() {
-    if (!this.#server) return [];
-    const { id } = this.#server;
-    return [{ to: id, message: this.#withIceServers({ type: 'welcome', id }) }];
+  renewIceServers() {
+    return this.#server ? [{ to: this.#server.id, message: this.#greeting(this.#server.id) }] : [];
   }
 
   /**
    * @param {string} id
-   * @param {import('./join_tokens.js').Ticket} [ticket]  what its link allows it
+   * @param {Pass} [pass]  what its token says, where tokens are wanted
    * @returns {Delivery[]}
    */
-  clientJoins(id, ticket = {}) {
-    this.#clients.set(id, ticket);
+  clientJoins(id, pass) {
+    this.#clients.set(id, {
+      ...(pass?.role === 'watcher' && { seat: 'watcher' }),
+      ...(pass?.name !== undefined && { name: pass.name }),
+    });
     const welcome = this.#welcome(id);
     return this.#server ? [welcome] : [welcome, { to: id, message: { type: 'waiting' } }];
   }
@@ -69,7 +71,8 @@ export class Room {
   }
 
   /**
-   * Clients may talk to the server only, the server to every client. The receiver sees the sender's id.
+   * Clients may talk to the server only, the server to every client. The receiver sees the sender's id, and in an offer
+   * the seat and name of the client's token: never its own word for them, which has not come through the parser.
    * @param {string} from
    * @param {import('./messages.js').Message} message  `id` names the receiver
    * @returns {Delivery | {refused: string}}
@@ -80,22 +83,24 @@ export class Room {
     if (!known) return { refused: 'no_such_peer' };
     const allowed = this.#server?.id === from ? this.#clients.has(to) : to === this.#server?.id;
     if (!allowed) return { refused: 'forbidden_route' };
-    // Whether somebody may play, and what he is called, is the token's word and not his own.
-    const ticket = message.type === 'offer' ? this.#clients.get(from) : {};
-    return { to, message: { ...message, ...ticket, id: from } };
+    return {
+      to,
+      message: { ...message, id: from, ...(message.type === 'offer' && this.#clients.get(from)) },
+    };
   }
 
   /** @param {string} to */
   #welcome(to) {
-    const message = this.#withIceServers({ type: 'welcome', id: to, ...this.#clients.get(to) });
+    const message = { ...this.#greeting(to), ...this.#clients.get(to) };
     if (!this.#server) return { to, message };
     const { id: server, sceneSha256: sha256 } = this.#server;
     const scene = { url: '/scene.glb', ...(sha256 && { sha256 }) };
     return { to, message: { ...message, server, scene } };
   }
 
-  #withIceServers(message) {
-    const iceServers = this.#iceServersFor(message.id);
-    return iceServers.length > 0 ? { ...message, iceServers } : message;
+  /** @param {string} id */
+  #greeting(id) {
+    const iceServers = this.#iceServersFor(id);
+    return { type: 'welcome', id, ...(iceServers && { iceServers }) };
   }
 }

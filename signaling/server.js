@@ -1,200 +1,117 @@
-import { randomUUID } from 'node:crypto';
-import { WebSocketServer } from 'ws';
-import { createAddressFinder } from './addresses.js';
-import { hasGoodOrigin, hasToken, refuseUpgrade, sceneHash } from './admission.js';
-import { Connection } from './connection.js';
-import { Gate } from './gate.js';
-import { createHostCheck } from './hosts.js';
-import { connectionKey, createGuardedServer, createHandler, pathOf } from './http.js';
-import { createIceServers } from './ice.js';
-import { JoinTokens, subProtocol, tokenOf } from './join_tokens.js';
-import { defaultLimits } from './limits.js';
-import { parseMessage } from './messages.js';
+import { createServer } from 'node:http';
+import { createServer as createTlsServer } from 'node:https';
+import { AddressGate } from './address_gate.js';
+import { createAddresses } from './addresses.js';
+import { Doorman } from './doorman.js';
+import { createHosts } from './hosts.js';
+import { createIce } from './ice.js';
+import { createJoinTokens } from './join_tokens.js';
+import { limitsWith } from './limits.js';
+import { Refusals, limitedLog } from './log.js';
 import { createMetrics } from './metrics.js';
-import { createRefusals } from './refusals.js';
+import { Relay } from './relay.js';
+import { createHandler } from './requests.js';
 import { Room } from './room.js';
-import { readCertificate, watchCertificate } from './tls.js';
-
-/** Codes by which a browser, which cannot read the answer to a refused upgrade, learns why it was refused. */
-const closeCodes = { tryAgainLater: 1013, notAdmitted: 4401 };
+import { readTls, watchTls } from './tls.js';
+import { createUpgrades } from './upgrades.js';
 
 /**
  * Starts the signaling server: /server for the render server, /client for browsers, the web client's files,
  * /scene.glb, /healthz and /metrics.
  *
- * @typedef {{host: string, port: number, token: string, clientFolder: string, scene: Buffer,
- *            names?: string[], allowedOrigins?: string[], proxies?: string[], iceUrls?: string[], turnSecret?: string,
- *            joinSecret?: string, tls?: {cert: string, key: string},
- *            limits?: Partial<import('./limits.js').Limits>, log?: (line: string) => void}} Options
- *   port 0 takes a free one; names and proxies as in hosts.js and addresses.js; without joinSecret everybody may join
- * @param {Options} options
- * @returns {Promise<{port: number, close: () => Promise<void>}>} rejects with the system's error (EADDRINUSE, ...)
+ * @param {{host: string, port: number, token: string, clientFolder: string, scene: Buffer,
+ *          allowedOrigins?: string[], names?: string[], trustedProxies?: string[], joinSecret?: string | undefined,
+ *          iceServers?: string[], turnSecret?: string | undefined, tls?: import('./tls.js').TlsFiles | undefined,
+ *          limits?: Partial<import('./limits.js').Limits>, log?: (line: string) => void}} options
+ *   port 0 takes a free one; the others are as on the command line (options.js)
+ * @returns {Promise<{port: number, close: () => Promise<void>}>} rejects with the system's error (EADDRINUSE, ...), or with
+ *   an InputError that says which option is wrong
  */
-export async function startSignaling({ log = () => {}, ...options }) {
-  const limits = { ...defaultLimits, ...options.limits };
-  const addresses = createAddressFinder(options.proxies ?? []);
-  const iceServers = {
-    urls: options.iceUrls ?? [],
-    turnSecret: options.turnSecret,
-    lifetimeMs: limits.turnLifetimeMs,
-  };
-  const room = new Room(createIceServers(iceServers));
-  const metrics = createMetrics(room);
-  const refuse = createRefusals(metrics, log);
-  const gate = new Gate(limits);
-  const tokens = options.joinSecret === undefined ? undefined : new JoinTokens(options.joinSecret);
-  const hostIsOurs = createHostCheck(options.names ?? []);
-  /** @type {Map<string, Connection>} */
-  const connections = new Map();
+export async function startSignaling({ log = () => {}, allowedOrigins = [], ...options }) {
+  const limits = limitsWith(options.limits);
+  const ice = createIce(options.iceServers ?? [], options.turnSecret, limits.turnLifetimeSeconds);
+  const addresses = createAddresses(options.trustedProxies);
+  const hosts = createHosts(options.names);
+  const { joinSecret } = options;
+  const joinTokens = joinSecret === undefined ? undefined : createJoinTokens(joinSecret, limits);
 
-  const deliver = (deliveries) => {
-    for (const { to, message } of deliveries) connections.get(to)?.send(message);
-  };
+  const room = new Room(ice.serversFor);
+  const gate = new AddressGate(limits);
+  const metrics = createMetrics(room, gate);
+  const refusals = new Refusals(log, limits);
+  const doorman = new Doorman({ gate, addresses, limits, metrics, refusals });
+  const relay = new Relay({ room, metrics, gate, limits, log: limitedLog(log, limits) });
 
-  const accept = (socket, role, { onClose = () => {}, ...join }) => {
-    const id = randomUUID();
-    const connection = new Connection(socket, {
-      id,
-      role,
-      limits,
-      metrics,
-      onMessage(text) {
-        const parsed = parseMessage(text, role, limits);
-        if ('refused' in parsed) return connection.refuse(parsed.refused);
-        if ('work' in parsed) return metrics.showWork(parsed.work);
-        const relayed = room.relay(id, parsed.message);
-        if ('refused' in relayed) return connection.refuse(relayed.refused);
-        metrics.relayedMessages.inc({ type: parsed.message.type });
-        metrics.relayedBytes.inc(Buffer.byteLength(text));
-        deliver([relayed]);
-      },
-      onClose() {
-        connections.delete(id);
-        if (role === 'server') metrics.showWork();
-        onClose();
-        deliver(room.leaves(id));
-        log(`${role} ${id} left; ${room.clientCount} clients`);
-      },
-    });
-    connections.set(id, connection);
-    metrics.connections.inc({ role });
-    deliver(role === 'server' ? room.serverJoins(id, join.sceneSha256) : room.clientJoins(id, join.ticket));
-    const name = join.ticket?.name ? ` (${join.ticket.name})` : '';
-    log(`${role} ${id}${name} joined; ${room.clientCount} clients`);
+  const { clientFolder, scene, token } = options;
+  const shared = { room, metrics, refusals, gate, doorman, addresses, hosts, joinTokens, relay, limits };
+  const handle = createHandler({ ...shared, clientFolder, scene });
+  const upgrade = createUpgrades({ ...shared, allowedOrigins, token });
+  // What fails there is our fault and fails for one peer: everybody else goes on.
+  const failed = (stream) => (error) => {
+    // Where, not what: its message may hold what was sent, which may be a token.
+    const where = error.stack?.match(/^ +at .*/m)?.[0].trim() ?? '';
+    const text = `an answer could not be made: ${error.code ?? error.name} ${where}`;
+    refusals.note(metrics.droppedConnections, 'internal_error', 'unknown', text);
+    stream.destroy();
   };
 
-  const webSockets = new WebSocketServer({
-    noServer: true,
-    clientTracking: false,
-    maxPayload: limits.maxMessageBytes,
-    perMessageDeflate: false, // small messages: not worth a decompressor that strangers can feed
-    handleProtocols: (protocols) => (protocols.has(subProtocol) ? subProtocol : false),
+  const pair = options.tls && readTls(options.tls);
+  const http = createHttpServer(pair, limits);
+  doorman.guard(http);
+  http.on('request', (request, response) => {
+    // All requests of one chunk come here, also when the first of them have ended the connection.
+    if (!request.socket.destroyed) handle(request, response).catch(failed(response));
   });
-
-  const decline = (request, socket, status, reason, error) => {
-    refuse(reason, addresses.visitor(request), error);
-    refuseUpgrade(socket, status, error);
-  };
-
-  const upgradeServer = (request, socket, head) => {
-    if (!hasToken(request, options.token))
-      return decline(request, socket, 401, 'token', 'wrong or missing token');
-    if (room.hasServer)
-      return decline(request, socket, 409, 'second_server', 'a render server is already connected');
-    const sceneSha256 = sceneHash(request);
-    webSockets.handleUpgrade(request, socket, head, (ws) => accept(ws, 'server', { sceneSha256 }));
-  };
-
-  // A browser cannot read the answer to a refused upgrade, so it is accepted and closed with the reason.
-  const turnAway = (request, socket, head, { reason, code, text }) => {
-    refuse(reason, addresses.visitor(request), text);
-    webSockets.handleUpgrade(request, socket, head, (ws) => {
-      ws.on('error', () => {});
-      ws.close(code, text);
-      setTimeout(() => ws.terminate(), limits.closeTimeoutMs).unref();
-    });
-  };
-
-  const upgradeClient = async (request, socket, head) => {
-    if (!hostIsOurs(request.headers.host))
-      return decline(request, socket, 421, 'host', 'this page is not served by that name (see --name)');
-    if (!hasGoodOrigin(request, options.allowedOrigins ?? [])) {
-      const origin = String(request.headers.origin).slice(0, 100);
-      return decline(request, socket, 403, 'origin', `pages of ${origin} may not join`);
-    }
-    const admitted = tokens ? await tokens.verify(tokenOf(request)) : { ticket: {} };
-    if (socket.destroyed) return;
-    if ('refused' in admitted) {
-      const { refused: reason, text } = admitted;
-      return turnAway(request, socket, head, { reason, code: closeCodes.notAdmitted, text });
-    }
-    const visitor = addresses.visitor(request);
-    const full =
-      room.clientCount >= limits.maxClients
-        ? { reason: 'room_full', text: 'the room is full' }
-        : gate.enters(visitor, performance.now())
-          ? undefined
-          : { reason: 'address_full', text: 'too many connections from your address' };
-    if (full) return turnAway(request, socket, head, { ...full, code: closeCodes.tryAgainLater });
-    const onClose = () => gate.leaves(visitor);
-    let accepted = false;
-    webSockets.handleUpgrade(request, socket, head, (ws) => {
-      accepted = true;
-      accept(ws, 'client', { ticket: admitted.ticket, onClose });
-    });
-    // Refused by the library itself, which has answered: no place is held.
-    if (!accepted) onClose();
-  };
-
-  const handler = createHandler({ room, metrics, tokens, ...options });
-  const certificate = options.tls && readCertificate(options.tls);
-  const http = createGuardedServer({ limits, gate, addresses, refuse, hostIsOurs, certificate }, handler);
-  http.on('upgrade', (request, socket, head) => {
-    socket.on('error', () => socket.destroy());
-    socket.setTimeout(0); // from here on pings tell whether somebody is there
-    const visitor = addresses.visitor(request);
-    if (!gate.joins(visitor, performance.now()))
-      return decline(request, socket, 429, 'joins', 'too many attempts to join');
-    gate.upgrades(addresses.visitorOf(socket.remoteAddress), connectionKey(socket));
-    const path = pathOf(request);
-    if (path === '/server') upgradeServer(request, socket, head);
-    else if (path === '/client') upgradeClient(request, socket, head);
-    else decline(request, socket, 404, 'path', 'WebSockets are at /server and /client');
-  });
-
+  http.on('upgrade', (request, socket, head) => upgrade(request, socket, head).catch(failed(socket)));
   await new Promise((resolve, reject) => {
     http.once('error', reject);
     http.listen(options.port, options.host, () => resolve(undefined));
   });
-  const stopWatching = options.tls
-    ? watchCertificate(
-        options.tls,
-        /** @type {import('node:https').Server} */ (http),
-        log,
-        limits.certificateLookMs,
-      )
-    : () => {};
-  const timers = [
-    setInterval(() => {
-      for (const connection of connections.values()) connection.heartbeat();
-    }, limits.pingIntervalMs),
-    setInterval(() => gate.forget(performance.now()), limits.visitorMemoryMs),
-    setInterval(() => deliver(room.greetServer()), limits.turnLifetimeMs / 2),
-  ];
+
+  const beat = () => {
+    relay.heartbeat();
+    gate.forget(performance.now());
+  };
+  const timers = [setInterval(beat, limits.pingIntervalMs)];
+  if (ice.refreshMs) timers.push(setInterval(() => relay.renewIceServers(), ice.refreshMs).unref());
+  if (options.tls && pair) {
+    const use = (renewed) => /** @type {import('node:https').Server} */ (http).setSecureContext(renewed);
+    timers.push(watchTls(options.tls, pair, use, log, limits.certificatePollMs));
+  }
 
   return {
     port: /** @type {import('node:net').AddressInfo} */ (http.address()).port,
     async close() {
-      timers.forEach(clearInterval);
-      stopWatching();
+      for (const timer of timers) clearInterval(timer);
+      refusals.close();
       const closed = new Promise((resolve) => http.close(resolve));
-      // All in one go, so that nobody hears of the others' leaving: the render server would end the sessions of clients
-      // that it took for gone, and those go on without us.
-      for (const connection of connections.values())
-        connection.close(1001, 'the signaling server is shutting down');
+      relay.close();
+      doorman.close();
       setTimeout(() => http.closeAllConnections(), limits.closeTimeoutMs).unref();
       http.closeIdleConnections();
       await closed;
     },
   };
+}
+
+/** @type {(pair: import('./tls.js').Pair | undefined, limits: import('./limits.js').Limits) => import('node:http').Server} */
+function createHttpServer(pair, limits) {
+  const options = {
+    maxHeaderSize: limits.maxHeaderBytes,
+    headersTimeout: limits.headersTimeoutMs,
+    requestTimeout: Math.max(limits.requestTimeoutMs, limits.headersTimeoutMs),
+    keepAliveTimeout: limits.keepAliveTimeoutMs,
+    connectionsCheckingInterval: 1000, // Node's own is 30 s, by which the two above would be late
+  };
+  const http = pair
+    ? createTlsServer({
+        ...options,
+        cert: pair.cert,
+        key: pair.key,
+        handshakeTimeout: limits.tlsHandshakeTimeoutMs,
+      })
+    : createServer(options);
+  http.timeout = limits.answerTimeoutMs;
+  http.maxRequestsPerSocket = limits.maxRequestsPerConnection;
+  return http;
 }

@@ -1,64 +1,94 @@
-import { X509Certificate } from 'node:crypto';
-import { readFileSync, watchFile, unwatchFile } from 'node:fs';
+import { X509Certificate, createPrivateKey } from 'node:crypto';
+import { readFileSync, statSync } from 'node:fs';
 import { createSecureContext } from 'node:tls';
+import { InputError, reading } from './input.js';
 
 /**
- * Reads a certificate (with its chain) and its key, PEM.
- * @param {{cert: string, key: string}} files
- * @returns {{cert: Buffer, key: Buffer}}  throws Error with a sentence for people
+ * @typedef {{cert: string, key: string}} TlsFiles  paths of PEM files; the certificate's may hold its chain
+ * @typedef {{cert: Buffer, key: Buffer, ends: number}} Pair  for tls.createSecureContext; `ends` in milliseconds since 1970
  */
-export function readCertificate({ cert: certFile, key: keyFile }) {
-  const read = (option, path) => {
-    try {
-      return readFileSync(path);
-    } catch (error) {
-      throw new Error(
-        `cannot read the ${option} ${path}: ${error.code ?? error.message}; give another with --${option}`,
-      );
-    }
-  };
-  const [cert, key] = [read('tls-cert', certFile), read('tls-key', keyFile)];
-  let first;
-  try {
-    first = new X509Certificate(cert);
-  } catch {
-    throw new Error(`${certFile} holds no certificate: --tls-cert wants a PEM file, with the chain after it`);
-  }
-  const now = Date.now();
-  if (Date.parse(first.validTo) < now)
-    throw new Error(`the certificate ${certFile} expired on ${first.validTo}: renew it`);
-  if (Date.parse(first.validFrom) > now)
-    throw new Error(
-      `the certificate ${certFile} is only good from ${first.validFrom} on: look at this machine's clock`,
+
+/**
+ * Reads a certificate and its key, and checks what would otherwise show at the first visitor only.
+ * @param {TlsFiles} files
+ * @param {number} [now]  milliseconds since 1970
+ * @returns {Pair}
+ */
+export function readTls({ cert: certPath, key: keyPath }, now = Date.now()) {
+  const cert = reading('tls-cert', certPath, () => readFileSync(certPath));
+  const key = reading('tls-key', keyPath, () => readFileSync(keyPath));
+  const certificate = parsing('--tls-cert', certPath, 'a certificate', () => new X509Certificate(cert));
+  const privateKey = parsing('--tls-key', keyPath, 'a private key without a passphrase', () =>
+    createPrivateKey(key),
+  );
+  if (!certificate.checkPrivateKey(privateKey))
+    throw new InputError(
+      `the key ${keyPath} does not belong to the certificate ${certPath}: give both of one pair`,
     );
-  try {
-    createSecureContext({ cert, key });
-  } catch (error) {
-    throw new Error(
-      `${keyFile} is no key of the certificate ${certFile} (${error.message}): give both of one pair`,
+  if (now > Date.parse(certificate.validTo))
+    throw new InputError(`the certificate ${certPath} expired on ${certificate.validTo}: renew it`);
+  if (now < Date.parse(certificate.validFrom))
+    throw new InputError(
+      `the certificate ${certPath} is not valid before ${certificate.validFrom}: look at this machine's clock`,
     );
-  }
-  return { cert, key };
+  parsing('--tls-cert', certPath, 'a chain of certificates', () => createSecureContext({ cert, key }));
+  return { cert, key, ends: Date.parse(certificate.validTo) };
 }
 
 /**
- * Takes a renewed certificate without ending a connection; one that is no good is left alone.
- * @param {{cert: string, key: string}} files
- * @param {import('node:https').Server} server
+ * Looks again and again whether the files have changed, as certbot and the like change them: no handshake fails for it
+ * and no session ends. A pair that is no good is told once, and the one in use stays.
+ * @param {TlsFiles} files
+ * @param {Pair} pair  in use
+ * @param {(pair: Pair) => void} use
  * @param {(line: string) => void} log
- * @param {number} intervalMs  between two looks at the files
- * @returns {() => void} ends it
+ * @param {number} pollMs
+ * @returns {NodeJS.Timeout} for clearInterval
  */
-export function watchCertificate(files, server, log, intervalMs) {
-  const renew = () => {
-    try {
-      server.setSecureContext(readCertificate(files));
-      log(`the certificate ${files.cert} was renewed`);
-    } catch (error) {
-      log(`the old certificate stays: ${error.message}`);
-    }
+export function watchTls(files, pair, use, log, pollMs) {
+  let seen = stateOf(files);
+  let { ends } = pair;
+  let told = '';
+  const tell = (/** @type {string} */ line) => {
+    if (line !== told) log(line);
+    told = line;
   };
-  const paths = [files.cert, files.key];
-  for (const path of paths) watchFile(path, { interval: intervalMs, persistent: false }, renew);
-  return () => paths.forEach((path) => unwatchFile(path, renew));
+  const look = () => {
+    const state = stateOf(files);
+    // What was no good is tried again: the key may come a little after its certificate.
+    if (state !== seen || told !== '') {
+      seen = state;
+      const renewed = readTls(files);
+      use(renewed);
+      ({ ends } = renewed);
+      told = '';
+      log(`reads the renewed certificate ${files.cert}`);
+    } else if (Date.now() > ends) readTls(files); // which says so
+  };
+  return setInterval(() => {
+    try {
+      look();
+    } catch (error) {
+      tell(`goes on with the old certificate: ${error.message}`);
+    }
+  }, pollMs).unref();
+}
+
+/** Text that differs when a file has been written or replaced. @type {(files: TlsFiles) => string} */
+function stateOf({ cert, key }) {
+  const states = [cert, key].map((path) => {
+    const { ino, size, mtimeMs } = statSync(path, { throwIfNoEntry: false }) ?? {};
+    return `${ino} ${size} ${mtimeMs}`;
+  });
+  return states.join();
+}
+
+/** @template T @param {string} option @param {string} path @param {string} what @param {() => T} parse @returns {T} */
+function parsing(option, path, what, parse) {
+  try {
+    return parse();
+  } catch {
+    // OpenSSL's own words name neither the file nor the trouble.
+    throw new InputError(`${path} is not ${what} in PEM: give another with ${option}`);
+  }
 }

@@ -39,7 +39,7 @@ export class Peer {
   #messages = [];
   #wanted = [];
 
-  constructor(url, options, protocols = []) {
+  constructor(url, options = {}, protocols = /** @type {string[]} */ ([])) {
     this.socket = new WebSocket(url, protocols, options);
     this.closed = new Promise((resolve) => {
       this.socket.on('close', (code, reason) => resolve({ code, reason: reason.toString() }));
@@ -61,10 +61,7 @@ export class Peer {
   }
 
   static server(url, { headers = {}, ...options } = {}) {
-    return new Peer(`${url}/server`, {
-      ...options,
-      headers: { Authorization: `Bearer ${token}`, ...headers },
-    });
+    return new Peer(`${url}/server`, { ...options, headers: { Authorization: `Bearer ${token}`, ...headers } });
   }
 
   static client(url, options) {

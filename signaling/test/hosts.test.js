@@ -2,52 +2,79 @@ import assert from 'node:assert/strict';
 import { get } from 'node:http';
 import { hostname } from 'node:os';
 import { test } from 'node:test';
-import { createHostCheck } from '../hosts.js';
+import { createHosts } from '../hosts.js';
 import { Peer, metric, start } from './harness.js';
 
-/** The status of a request that names this host. */
-const ask = (signaling, host, path = '/') =>
-  new Promise((settle, fail) =>
-    get({ port: signaling.port, host: '127.0.0.1', path, headers: { Host: host } }, (response) => {
-      response.resume();
-      settle(response.statusCode);
-    }).on('error', fail),
-  );
+/** @returns {Promise<{status: number, body: string}>} */
+const ask = (signaling, path, host) =>
+  new Promise((resolve, reject) => {
+    get(`${signaling.http}${path}`, { agent: false, headers: { Host: host } }, (response) => {
+      let body = '';
+      response.on('data', (chunk) => (body += chunk));
+      response.on('end', () => resolve({ status: Number(response.statusCode), body }));
+    }).on('error', reject);
+  });
 
-test('addresses, localhost, our own and given names are ours, nothing else', () => {
-  const isOurs = createHostCheck(['Room.example.org']);
-  const port = ':8080';
-  for (const host of [
-    '127.0.0.1',
-    '10.1.2.3',
-    '[::1]',
-    'localhost',
-    hostname(),
+test('addresses, localhost, this machine and the names that are given are served, others are not', () => {
+  const hosts = createHosts(['room.example.org', 'Other.Example.org.']);
+  const own = hostname().toLowerCase();
+  const good = ['127.0.0.1', '127.0.0.1:8080', '[::1]:80', '[2001:db8::1]', 'localhost:1', 'LOCALHOST', own];
+  good.push(
+    `${own.split('.')[0]}.local:8080`,
     'room.example.org',
+    'ROOM.example.org:443',
     'room.example.org.',
-  ])
-    for (const whole of [host, host + port]) assert.equal(isOurs(whole), true, whole);
-  for (const host of [
+    'other.example.org',
+  );
+  for (const host of good) assert.equal(hosts.refusal(host), undefined, host);
+  const bad = [
+    undefined,
+    '',
     'evil.example',
     'room.example.org.evil.example',
-    'xroom.example.org',
-    '',
-    '127.0.0.1.nip.io',
-  ])
-    assert.equal(isOurs(host), false, host);
-  assert.equal(isOurs(undefined), true);
+    'evilroom.example.org',
+    'localhost.evil.example',
+  ];
+  bad.push(
+    '127.0.0.1.evil.example',
+    'room.example.org:80:80',
+    'a@room.example.org',
+    '[evil]',
+    'room.example.org/x',
+    '[room.example.org]',
+  );
+  for (const host of bad) assert.ok(hosts.refusal(host), host);
+  assert.match(hosts.refusal('evil.example:8080') ?? '', /'evil\.example'.*--name evil\.example$/);
 });
 
-test('a foreign page that has its name lead here gets nothing', async (t) => {
+test('names that are none are refused at the start', () => {
+  for (const name of ['https://room.example.org', 'room.example.org:8443', '', 'a b', '-x', '*.example.org'])
+    assert.throws(() => createHosts([name]), /--name wants a host name such as/, name);
+});
+
+test('a page that lets its own name lead here gets nothing', async (t) => {
   const signaling = await start(t, { names: ['room.example.org'] });
-  const foreign = `evil.example:${signaling.port}`;
-  for (const path of ['/', '/scene.glb', '/healthz', '/metrics'])
-    assert.equal(await ask(signaling, foreign, path), 421, path);
-  // Of one origin with us, as its visitor's browser sees it.
-  const page = Peer.client(signaling.ws, { headers: { Host: foreign }, origin: `http://${foreign}` });
-  assert.equal((await page.refused).status, 421);
-  assert.equal(await metric(signaling, 'refused_connections_total{reason="host"}'), 5);
-  assert.equal(await ask(signaling, 'room.example.org'), 200);
-  const server = Peer.server(signaling.ws, { headers: { Host: 'signaling.internal' } });
-  assert.equal((await server.next()).type, 'welcome', 'the render server has shown its token');
+  for (const path of ['/', '/index.html', '/scene.glb', '/none']) {
+    const { status, body } = await ask(signaling, path, `evil.example:${signaling.port}`);
+    assert.equal(status, 421, path);
+    assert.match(JSON.parse(body).error, /--name evil\.example/);
+    assert.notEqual((await ask(signaling, path, 'room.example.org')).status, 421);
+  }
+  // Its origin and its host are the same: only the host gives it away.
+  const headers = { Host: 'evil.example', Origin: 'http://evil.example' };
+  const { status, body } = await Peer.client(signaling.ws, { headers }).refused;
+  assert.equal(status, 421);
+  assert.match(body.error, /evil\.example/);
+  assert.equal(await metric(signaling, 'refused_requests_total{reason="host"}'), 4);
+  assert.equal(await metric(signaling, 'refused_connections_total{reason="host"}'), 1);
+
+  const good = { Host: 'room.example.org', Origin: 'https://room.example.org' };
+  assert.equal((await Peer.client(signaling.ws, { headers: good }).next()).type, 'welcome');
+});
+
+test('health checks, scrapers and the render server may use any name', async (t) => {
+  const signaling = await start(t);
+  for (const path of ['/healthz', '/metrics'])
+    assert.equal((await ask(signaling, path, 'relay:8080')).status, 200);
+  assert.equal((await Peer.server(signaling.ws, { headers: { Host: 'relay' } }).next()).type, 'welcome');
 });

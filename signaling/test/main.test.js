@@ -1,35 +1,11 @@
 import assert from 'node:assert/strict';
-import { spawn } from 'node:child_process';
 import { once } from 'node:events';
 import { createServer } from 'node:net';
 import { join } from 'node:path';
 import { test } from 'node:test';
 import { writeFileSync } from 'node:fs';
-import { fileURLToPath } from 'node:url';
 import { makeSite, populate } from './harness.js';
-
-const main = fileURLToPath(new URL('../main.js', import.meta.url));
-
-function run(t, args) {
-  const child = spawn(process.execPath, [main, ...args], { stdio: ['ignore', 'pipe', 'pipe'] });
-  t.after(() => child.kill('SIGKILL'));
-  const output = { out: '', err: '' };
-  child.stdout.on('data', (chunk) => (output.out += chunk));
-  child.stderr.on('data', (chunk) => (output.err += chunk));
-  const exited = once(child, 'close').then(([code]) => ({ code, ...output }));
-  return { child, exited, output };
-}
-
-const argsOf = (site, port = 0) => [
-  '--port',
-  String(port),
-  '--token-file',
-  site.token,
-  '--client',
-  site.client,
-  '--scene',
-  site.scene,
-];
+import { argsOf, run } from './process.js';
 
 test('a busy port ends with 2 and says which port and what to try', async (t) => {
   const blocker = createServer().listen(0, '127.0.0.1');
@@ -61,19 +37,48 @@ test('bad arguments and files end with 2 and name the culprit', async (t) => {
     [[...argsOf(site), '--scene', site.root], /scene .*EISDIR/],
     [[...argsOf(site), '--scene', text], /scene\.gltf is no binary glTF.*\.glb/],
     [[...argsOf(site), '--scene', empty], /empty is no binary glTF/],
+    [[...argsOf(site), '--name', 'https://a'], /--name wants.*not 'https:\/\/a'/],
+    [[...argsOf(site), '--tls-cert', text], /--tls-key is missing/],
+    [[...argsOf(site), '--tls-cert', text, '--tls-key', text], /scene\.gltf is not a certificate/],
+    [[...argsOf(site), '--trust-proxy', 'me'], /--trust-proxy wants.*not 'me'/],
+    [[...argsOf(site), '--ice-server', 'x'], /--ice-server wants.*not 'x'/],
+    [[...argsOf(site), '--ice-server', 'turn:a'], /turn:a wants --turn-secret-file/],
+    [[...argsOf(site), '--turn-secret-file', join(site.root, 'none')], /turn-secret-file .*none: ENOENT/],
+    [
+      [...argsOf(site), '--join-secret-file', site.token],
+      /join-secret-file .*token has 18 characters.*openssl rand -hex 32/,
+    ],
+    [[...argsOf(site), '--limit', 'maxEverything=1'], /--limit wants.*not 'maxEverything=1'/],
+    [[...argsOf(site), '--limit', 'clientRate=1'], /--limit wants/],
+    [[...argsOf(site), '--limit', 'maxClients=1\/2'], /--limit wants/],
+    [[...argsOf(site), '--limit', 'constructor=1'], /--limit wants/],
   ];
-  for (const [args, message] of cases) {
+  const runs = cases.map(async ([args, message]) => {
     const { code, err } = await run(t, args).exited;
     assert.equal(code, 2, args.join(' '));
     assert.match(err, message);
-  }
+    assert.doesNotMatch(err, /a-secret-for-tests/);
+  });
+  await Promise.all(runs);
+});
+
+test('every option is taken, and --limit changes what it names', async (t) => {
+  const site = makeSite(t);
+  const secret = join(site.root, 'secret');
+  writeFileSync(secret, 'd7'.repeat(32));
+  const options = ['--name', 'room.example.org', '--trust-proxy', 'loopback', '--join-secret-file', secret];
+  options.push('--ice-server', 'turn:a', '--ice-server', 'stun:b', '--turn-secret-file', secret);
+  options.push('--limit', 'maxPipelinedRequests=3', '--limit', 'requestRatePerAddress=0.1/2');
+  const program = run(t, [...argsOf(site), ...options]);
+  const url = `http://127.0.0.1:${await program.port()}`;
+  const status = async () => (await fetch(url)).status;
+  assert.deepEqual([await status(), await status(), await status()], [200, 200, 429]);
+  assert.doesNotMatch(program.output.err, /d7d7/);
 });
 
 test('SIGTERM ends it quickly with 0, and nobody takes the others for gone', async (t) => {
-  const { child, exited, output } = run(t, argsOf(makeSite(t)));
-  while (!output.out.includes('listens on')) await once(child.stdout, 'data');
-  const [, port] = output.out.match(/:(\d+)\n/);
-  const { server, clients } = await populate({ ws: `ws://127.0.0.1:${port}` }, 3);
+  const { child, exited, port } = run(t, argsOf(makeSite(t)));
+  const { server, clients } = await populate({ ws: `ws://127.0.0.1:${await port()}` }, 3);
   const heard = [];
   for (const peer of [server, ...clients.map(({ peer }) => peer)])
     peer.socket.on('message', (data) => heard.push(String(data)));

@@ -20,6 +20,57 @@ test("messages reach the named peer with the sender's id and only the known fiel
   assert.equal(await metric(signaling, 'relayed_messages_total{type="role"}'), 1);
 });
 
+test('the secret of a session goes from the server to its client and back, and is a plain word', async (t) => {
+  const signaling = await start(t);
+  const { server, serverId, clients } = await populate(signaling, 1);
+  const [{ peer, id }] = clients;
+  const session = 'aZ09-_'.repeat(11).slice(0, 64);
+  server.send({ id, type: 'role', cube: 1, players: 1, watchers: 0, session });
+  assert.equal((await peer.next()).session, session);
+  peer.send({ id: serverId, type: 'offer', description: 'v=0', session });
+  assert.deepEqual(await server.next(), { id, type: 'offer', description: 'v=0', session });
+  peer.send({ id: serverId, type: 'rejoin', session, sneaked: 'in' });
+  assert.deepEqual(await server.next(), { id, type: 'rejoin', session });
+
+  const bad = ['', 'x'.repeat(65), 'a b', 'ä', 'a\n', 7, null, ['x'], {}];
+  for (const wrong of bad) {
+    peer.send({ id: serverId, type: 'rejoin', session: wrong });
+    peer.send({ id: serverId, type: 'candidate', candidate: 'c', mid: '0' });
+    assert.equal((await server.next()).type, 'candidate');
+  }
+  peer.send({ id: serverId, type: 'rejoin' });
+  peer.send({ id: serverId, type: 'offer', description: 'v=0', session: 'a b' });
+  server.send({ id, type: 'rejoin', session });
+  server.send({ id, type: 'role', cube: 1, players: 1, watchers: 0, session: 'a b' });
+  server.send({ id, type: 'answer', description: 'v=0' });
+  assert.equal((await peer.next()).type, 'answer');
+  assert.equal(await metric(signaling, 'refused_messages_total{reason="malformed"}'), bad.length + 3);
+  assert.equal(await metric(signaling, 'refused_messages_total{reason="forbidden_type"}'), 1);
+});
+
+test('offers of an address are bounded, beside the one that each welcome asks for', async (t) => {
+  const offerRatePerAddress = { perSecond: 0, burst: 2 };
+  const signaling = await start(t, { limits: { offerRatePerAddress } });
+  const { server, serverId, clients } = await populate(signaling, 2);
+  const offer = { id: serverId, type: 'offer', description: 'v=0' };
+  for (let i = 0; i < 10; ++i) clients[0].peer.send(offer);
+  clients[1].peer.send({ ...offer, description: 'owed' });
+  for (let i = 0; i < 3; ++i) assert.equal((await server.next()).id, clients[0].id);
+  assert.equal((await server.next()).description, 'owed');
+  assert.equal(await metric(signaling, 'refused_messages_total{reason="offer_rate"}'), 7);
+
+  // A render server that comes back is offered a channel by everybody.
+  server.socket.close();
+  for (const { peer } of clients) assert.equal((await peer.next()).type, 'waiting');
+  const back = Peer.server(signaling.ws);
+  const { id } = await back.next();
+  for (const { peer } of clients) {
+    assert.equal((await peer.next()).server, id);
+    peer.send({ ...offer, id });
+    assert.equal((await back.next()).type, 'offer');
+  }
+});
+
 test("the render server's work is shown in /metrics while it is there, and nobody else's", async (t) => {
   const signaling = await start(t);
   const { server, serverId, clients } = await populate(signaling, 1);
@@ -144,6 +195,23 @@ test('a flood is cut off after the burst, and the others go on', async (t) => {
 
   clients[1].peer.send({ id: serverId, type: 'offer', description: 'unharmed' });
   for (let message = await server.next(); message.description !== 'unharmed'; message = await server.next());
+});
+
+test('pings count as messages do, and bytes count whatever they are', async (t) => {
+  const signaling = await start(t);
+  const { server, serverId, clients } = await populate(signaling, 3);
+  const [pinging, wordy, other] = clients;
+  for (let i = 0; i < 1000; ++i) pinging.peer.socket.ping();
+  assert.equal((await pinging.peer.closed).code, 1008);
+  assert.deepEqual(await server.next(), { id: pinging.id, type: 'gone' });
+
+  const description = 'x'.repeat(defaultLimits.maxDescriptionLength);
+  for (let i = 0; i < 20; ++i) wordy.peer.send({ id: serverId, type: 'offer', description });
+  assert.equal((await wordy.peer.closed).code, 1006);
+  assert.equal(await metric(signaling, 'dropped_connections_total{reason="bytes"}'), 1);
+
+  other.peer.send({ id: serverId, type: 'offer', description: 'unharmed' });
+  while ((await server.next()).description !== 'unharmed');
 });
 
 test('messages to somebody who has just left are no offence', async (t) => {

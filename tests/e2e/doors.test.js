@@ -6,7 +6,7 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { test } from 'node:test';
 import { WebSocket } from 'ws';
-import { makeAuthority } from '../../signaling/test/certificates.js';
+import { makeAuthority } from './certificates.js';
 import { launch } from './browser.js';
 import { Program, freePort, root, signaling } from './programs.js';
 
@@ -31,7 +31,7 @@ test('only links let in: a player, a watcher by name; without one, or a stale on
   const barred = await browser.open(url);
   await barred.until('barred', ({ state }) => state === 'barred');
   const card = barred.page.locator('#trouble');
-  assert.match(await card.innerText(), /for those with a link[^]*ask who runs the room/i);
+  assert.match(await card.innerText(), /for those with a link[^]*link/i);
   await barred.screenshot('not-admitted');
 
   const watcher = await browser.open(link('--role', 'watcher', '--name', 'Ada'));
@@ -44,7 +44,7 @@ test('only links let in: a player, a watcher by name; without one, or a stale on
   await new Promise((proceed) => setTimeout(proceed, 1500));
   const late = await browser.open(stale);
   await late.until('barred', ({ state }) => state === 'barred');
-  assert.match(await late.page.locator('#trouble').innerText(), /your link has expired/i);
+  assert.match(await late.page.locator('#trouble').innerText(), /link has expired: ask whoever runs/i);
   // The other link in the same page.
   await late.page.goto(link('--role', 'watcher'));
   await late.lit();

@@ -45,7 +45,7 @@ const words: Readonly<
   barred: (reason) => ({
     short: 'Not admitted',
     title: 'This room is for those with a link',
-    text: `${sentence(reason)} Ask who runs the room for a new link, and open that one.`,
+    text: sentence(reason),
   }),
   full: (reason, s) => ({
     short: 'Refused',
