@@ -134,6 +134,7 @@ void serve(ServeOptions options) {
     throw UsageError("--rate: maps a second, above 0 and up to 1000");
   lightfield::check(options.settings);
   check(options.capture);
+  stream::check_signaling(options.signaling, options.ca_file);
   const auto ports = options.udp_port.empty() ? std::pair<unsigned short, unsigned short>{1024, 65535}
                                               : read_udp_ports(options.udp_port);
   std::stop_source stop;

@@ -18,6 +18,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "lichtveld/stream/server.hpp"
 #include "limits.hpp"
 #include "tls.hpp"
 
@@ -40,6 +41,14 @@ constexpr auto taken_pause = 2000ms;
 // A connection that has lasted this long starts the back-off anew.
 constexpr auto settled_time = 5s;
 
+// Null for ws.
+std::shared_ptr<asio::ssl::context> tls_for(const SignalingUrl& url, const std::string& ca_file) {
+  if (url.secure) return make_tls_context(ca_file);
+  if (!ca_file.empty())
+    throw std::invalid_argument("--ca-file is for wss://, and signaling is at " + url.text());
+  return nullptr;
+}
+
 // What happens when one side speaks TLS and the other does not tells little by itself.
 std::string in_words(const boost::system::error_code& error, bool secure) {
   if (secure && error.category() == asio::error::get_ssl_category())
@@ -50,6 +59,10 @@ std::string in_words(const boost::system::error_code& error, bool secure) {
 }
 
 }  // namespace
+
+void check_signaling(const std::string& url, const std::string& ca_file) {
+  tls_for(SignalingUrl::parse(url), ca_file);
+}
 
 SignalingUrl SignalingUrl::parse(std::string_view url) {
   const auto bad = [&](const std::string& why) {
@@ -97,10 +110,7 @@ std::string SignalingUrl::text() const {
 
 Signaling::Signaling(asio::io_context& io, Options options, Events events)
     : io_(io), options_(std::move(options)), events_(std::move(events)), retry_(io) {
-  if (options_.url.secure)
-    tls_ = make_tls_context(options_.ca_file);
-  else if (!options_.ca_file.empty())
-    throw std::invalid_argument("--ca-file is for wss://, and signaling is at " + options_.url.text());
+  tls_ = tls_for(options_.url, options_.ca_file);
   asio::co_spawn(io_, stay_connected(), asio::detached);
 }
 

@@ -59,8 +59,8 @@ std::shared_ptr<ssl::context> make_tls_context(const std::string& ca_file) {
   else
     context->load_verify_file(ca_file, error);
   if (error)
-    throw std::invalid_argument("--ca-file " + ca_file + ": no certificate can be read from it (" +
-                                error.message() + "); give a PEM file");
+    throw std::invalid_argument("--ca-file " + ca_file +
+                                ": no certificate can be read from it; give a PEM file");
   return context;
 }
 

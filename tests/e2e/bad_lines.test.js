@@ -36,7 +36,7 @@ test('ten seconds without network: back within five, with its own cube, and neve
     assert.doesNotMatch(await player.page.locator('#state').innerText(), /^Live/);
     await pause(250);
   }
-  assert.match(await player.page.locator('#trouble').innerText(), /network is gone|connection lost/i);
+  assert.match(await player.page.locator('#trouble').innerText(), /network is gone|no connection/i);
   await player.screenshot('network-gone');
   home.mend();
   const { role } = await player

@@ -34,7 +34,7 @@ const words: Readonly<
   }),
   lost: (reason, s) => ({
     short: `Reconnecting in ${s} s`,
-    title: 'Connection lost',
+    title: 'No connection',
     text: `${sentence(reason)} Trying again in ${s} s.`,
   }),
   offline: (reason, s) => ({
@@ -73,7 +73,7 @@ const withoutScene = (reason: string, s: number) => ({
 
 /** While an attempt is made: why the one before it failed. */
 const again = (reason: string) =>
-  reason ? { title: 'Connection lost', text: `${sentence(reason)} Trying again now.` } : {};
+  reason ? { title: 'No connection', text: `${sentence(reason)} Trying again now.` } : {};
 
 /** What became of one's own cube. */
 const lostCube = {

@@ -41,6 +41,10 @@ struct ServerOptions {
   std::function<Work()> work;
 };
 
+// Throws std::invalid_argument for a URL or a ca_file that is none, or that the other has no use for: what
+// Server's constructor would throw, before anything costly is made for it.
+void check_signaling(const std::string& url, const std::string& ca_file);
+
 // What /metrics and the log show; counts since the start.
 struct ServerStatistics {
   std::uint32_t peers = 0, players = 0;  // now, with an open channel; of these, with a cube
