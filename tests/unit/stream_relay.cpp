@@ -68,8 +68,8 @@ void Relay::greet(tcp::socket tcp) {
   socket_ = std::move(socket);
   queue_.clear();
   buffer_.clear();
-  connected_ = true;
   send_raw(R"({"type":"welcome","id":"server"})");
+  connected_ = true;  // after it, so that whatever a test sends comes later
   read_next();
 }
 
