@@ -1,6 +1,9 @@
 import nodeDataChannel from 'node-datachannel';
 import { WebSocket } from 'ws';
 
+/** Milliseconds after which it offers anew, as pages do: seldom a handshake hangs between the two WebRTC libraries. */
+const patienceMs = 3000;
+
 /** A client of protocol v1 that is no browser, written from docs/protocol.md: joins, and joins again when it has to. */
 export class CrowdMember {
   /** The newest role message. */
@@ -10,6 +13,7 @@ export class CrowdMember {
   #socket;
   #connection;
   #channel;
+  #patience;
   /** Candidates that have overtaken the answer. */
   #early = [];
   #server;
@@ -62,11 +66,13 @@ export class CrowdMember {
 
   #join() {
     this.#dropConnection();
+    this.#early = [];
     const connection = new nodeDataChannel.PeerConnection('member', {
       iceServers: [],
       bindAddress: '127.0.0.1',
     });
     this.#connection = connection;
+    this.#patience = setTimeout(() => this.role || this.#join(), patienceMs);
     connection.onLocalDescription((description) => this.#send({ type: 'offer', description }));
     connection.onLocalCandidate((candidate, mid) => this.#send({ type: 'candidate', candidate, mid }));
     // Messages that nobody takes would fill the library's queue, and then block its threads.
@@ -75,6 +81,7 @@ export class CrowdMember {
   }
 
   #dropConnection() {
+    clearTimeout(this.#patience);
     this.#connection?.close();
     this.#connection = undefined;
   }
