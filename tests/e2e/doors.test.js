@@ -45,8 +45,8 @@ test('only links let in: a player, a watcher by name; without one, or a stale on
   const late = await browser.open(stale);
   await late.until('barred', ({ state }) => state === 'barred');
   assert.match(await late.page.locator('#trouble').innerText(), /link has expired: ask whoever runs/i);
-  // The other link in the same page.
-  await late.page.goto(link('--role', 'watcher'));
+  // The other link in the same page, which loads itself anew.
+  await Promise.all([late.page.waitForEvent('load'), late.page.goto(link('--role', 'watcher'))]);
   await late.lit();
   for (const { output } of [first, server])
     for (const hidden of [stale.split('=')[1], 'a-secret-of-more'])
