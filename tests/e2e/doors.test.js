@@ -69,7 +69,10 @@ test("after a reload the cube is one's own again", async (t) => {
     (known) => known.role.cube === 0 && known.role.watchers === 1,
   );
   assert.deepEqual([role.players, role.watchers], [2, 1]);
-  assert.match((await watcher.page.locator('#hint-role').textContent()) ?? '', /has come back\. You are watching/);
+  assert.match(
+    (await watcher.page.locator('#hint-role').textContent()) ?? '',
+    /has come back\. You are watching/,
+  );
 });
 
 test('TLS from end to end: the page by https, signaling by wss, both by a test authority', async (t) => {
