@@ -35,8 +35,10 @@ void set_up_library() {
   });
 }
 
-// Nothing for what the library does not speak (TURN over TCP or TLS) or cannot read.
+// Nothing for what the library does not speak (TURN over TCP or TLS) or cannot read. It would take a word
+// without a scheme for a STUN server's name, and it asks only one of them.
 std::optional<rtc::IceServer> usable(const IceServer& server, bool share_port) {
+  if (!server.url.starts_with("stun:") && !server.url.starts_with("turn:")) return std::nullopt;
   try {
     rtc::IceServer found(server.url);
     if (found.type == rtc::IceServer::Type::Turn) {
