@@ -1,4 +1,5 @@
-// A full room, and many who come and go.
+// A full room, and many who come and go: tests/e2e/run.sh tests/e2e/crowd.test.js. Not in CTest: now and then the clients' own
+// WebRTC library hangs in closing a connection, and the test with it. stream.RoomTest.WhenManyGoAtOnce... is there.
 import assert from 'node:assert/strict';
 import { fork } from 'node:child_process';
 import { once } from 'node:events';
@@ -82,11 +83,7 @@ test("60 clients are back within ten seconds of a killed server's return", async
   t.diagnostic(`all were back after ${back.toFixed(0)} ms`);
 });
 
-// Not in every run: it takes more than a minute, and closing hundreds of connections hangs now and then in the clients' own
-// WebRTC library.
-const many = { skip: process.env.LICHTVELD_MANY_VISITS ? false : 'only with LICHTVELD_MANY_VISITS=1' };
-
-test('a thousand joins and leaves: nothing grows', many, async (t) => {
+test('a thousand joins and leaves: nothing grows', async (t) => {
   const { url, serve, first } = await signaling(t, manyFromHere);
   const server = serve();
   await server.says('connected');
