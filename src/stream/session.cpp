@@ -54,8 +54,12 @@ Joined Session::join(PeerNumber peer, const Entry& entry, TimePoint now) {
   return {.claim_refused = !entry.claim.empty() && !taken_back};
 }
 
-bool Session::take_back(Seat& claimant, const std::string& claim, TimePoint now) {
+void Session::forget_left(TimePoint now) {
   std::erase_if(left_, [&](const Left& left) { return now - left.when > claim_time; });
+}
+
+bool Session::take_back(Seat& claimant, const std::string& claim, TimePoint now) {
+  forget_left(now);
   if (claim.empty() || !claimant.may_play) return false;
   const auto own =
       std::find_if(left_.begin(), left_.end(), [&](const Left& left) { return left.secret == claim; });
@@ -73,7 +77,7 @@ bool Session::take_back(Seat& claimant, const std::string& claim, TimePoint now)
 void Session::leave(PeerNumber peer, TimePoint now) {
   const auto seat = std::find_if(seats_.begin(), seats_.end(), [&](const Seat& s) { return s.peer == peer; });
   if (seat == seats_.end()) return;
-  std::erase_if(left_, [&](const Left& left) { return now - left.when > claim_time; });
+  forget_left(now);
   if (seat->cube != 0 && !seat->secret.empty()) left_.push_back({seat->secret, seat->cube, now});
   seats_.erase(seat);
   give_free_cubes();

@@ -2,6 +2,9 @@ import { execFileSync } from 'node:child_process';
 import { writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 
+/** A key without a pass phrase; its file's name follows. */
+const newKey = ['-newkey', 'ec', '-pkeyopt', 'ec_paramgen_curve:P-256', '-nodes', '-keyout'];
+
 /**
  * A certificate authority in a folder, made with the openssl command, and certificates by it.
  * @param {string} folder
@@ -9,23 +12,7 @@ import { join } from 'node:path';
 export function makeAuthority(folder) {
   const openssl = (...args) => execFileSync('openssl', args, { cwd: folder, stdio: 'pipe' });
   const ca = join(folder, 'ca.pem');
-  openssl(
-    'req',
-    '-x509',
-    '-newkey',
-    'ec',
-    '-pkeyopt',
-    'ec_paramgen_curve:P-256',
-    '-nodes',
-    '-keyout',
-    'ca.key',
-    '-out',
-    ca,
-    '-days',
-    '2',
-    '-subj',
-    '/CN=Lichtveld test CA',
-  );
+  openssl('req', '-x509', ...newKey, 'ca.key', '-out', ca, '-days', '2', '-subj', '/CN=Lichtveld test CA');
   return {
     ca,
     /**
@@ -38,20 +25,7 @@ export function makeAuthority(folder) {
         join(folder, `${name}.${end}`),
       );
       writeFileSync(extensions, `subjectAltName=${names}\n`);
-      openssl(
-        'req',
-        '-newkey',
-        'ec',
-        '-pkeyopt',
-        'ec_paramgen_curve:P-256',
-        '-nodes',
-        '-keyout',
-        key,
-        '-out',
-        request,
-        '-subj',
-        `/CN=${name}`,
-      );
+      openssl('req', ...newKey, key, '-out', request, '-subj', `/CN=${name}`);
       openssl(
         'x509',
         '-req',

@@ -89,8 +89,9 @@ class Session {
     std::size_t cube;
     TimePoint when;
   };
-  std::size_t free_cube() const;  // 0: none
-  void give_free_cubes();         // to those who have waited longest
+  std::size_t free_cube() const;    // 0: none
+  void give_free_cubes();           // to those who have waited longest
+  void forget_left(TimePoint now);  // whose claim_time is over
   bool take_back(Seat& claimant, const std::string& claim, TimePoint now);
 
   std::vector<Place> places_;
