@@ -29,8 +29,9 @@ constexpr auto budget_a_map = 33ms;
 constexpr std::size_t cubes_of_players = 2;  // as stream's protocol has it
 
 struct ServeOptions {
-  std::string scene, signaling, token_file, ca_file, bind, public_ip;
-  std::string udp_port;  // PORT or FIRST-LAST; empty: any
+  std::string scene, token_file;
+  stream::ServerOptions stream;  // what the command line says of it
+  std::string udp_port;          // PORT or FIRST-LAST; empty: any
   double rate = 30;
   std::string method = "links";
   bool chosen_quality = false;
@@ -47,7 +48,7 @@ std::string read_token(const std::string& file) {
   return token;
 }
 
-std::pair<unsigned short, unsigned short> read_udp_ports(const std::string& text) {
+stream::UdpPorts read_udp_ports(const std::string& text) {
   const auto number = [&](std::string_view digits) {
     unsigned short port = 0;
     const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), port);
@@ -134,13 +135,13 @@ void serve(ServeOptions options) {
     throw UsageError("--rate: maps a second, above 0 and up to 1000");
   lightfield::check(options.settings);
   check(options.capture);
-  stream::check_signaling(options.signaling, options.ca_file);
-  const auto ports = options.udp_port.empty() ? std::pair<unsigned short, unsigned short>{1024, 65535}
-                                              : read_udp_ports(options.udp_port);
+  if (!options.udp_port.empty()) options.stream.udp_ports = read_udp_ports(options.udp_port);
+  stream::check_addresses(options.stream);
   std::stop_source stop;
   const StopSignals signals([&] { stop.request_stop(); });
   const auto scene = scene::load(options.scene);
-  const auto token = read_token(options.token_file);
+  options.stream.token = read_token(options.token_file);
+  options.stream.scene_hash = files::sha256_of_file(options.scene);
   const auto& engine = lightfield::engine(options.method);
   auto capture = make_capture(options.capture, 0);
   const gpu::Device device(options.device);
@@ -159,22 +160,15 @@ void serve(ServeOptions options) {
                    .around_update = [&](const std::function<void()>& work) { update_room(capture, work); }});
   const Closing closing{room, server};
   const std::stop_callback on_stop(stop.get_token(), [&] { room.stop(); });
-  server = std::make_unique<stream::Server>(stream::ServerOptions{
-      .signaling = options.signaling,
-      .ca_file = options.ca_file,
-      .token = token,
-      .scene_hash = files::sha256_of_file(options.scene),
-      .bind_address = options.bind,
-      .first_udp_port = ports.first,
-      .last_udp_port = ports.second,
-      .public_address = options.public_ip,
-      .places = seen_from_front(rest),
-      .mover =
-          [&](std::size_t cube, const std::vector<stream::Place>& places, stream::Move move) {
-            return seen_from_front(room.stepped(with_depth(places, rest), cube, direction_of(move)));
-          },
-      .places_changed = [&](const std::vector<stream::Place>& places) { room.place(with_depth(places, rest)); },
-      .work = [&] { return as_sent(room.work()); }});
+  options.stream.places = seen_from_front(rest);
+  options.stream.mover = [&](std::size_t cube, const std::vector<stream::Place>& places, stream::Move move) {
+    return seen_from_front(room.stepped(with_depth(places, rest), cube, direction_of(move)));
+  };
+  options.stream.places_changed = [&](const std::vector<stream::Place>& places) {
+    room.place(with_depth(places, rest));
+  };
+  options.stream.work = [&] { return as_sent(room.work()); };
+  server = std::make_unique<stream::Server>(std::move(options.stream));
   room.begin();
   spdlog::info("serving {}: --size {} --psf {} on {}", options.scene, options.settings.size,
                options.settings.psf, device.summary().name);
@@ -196,21 +190,22 @@ void add_serve(CLI::App& application) {
   const auto options = std::make_shared<ServeOptions>();
   command->add_option("--scene", options->scene, "The scene, .glb or .gltf")->required();
   command
-      ->add_option("--signaling", options->signaling,
+      ->add_option("--signaling", options->stream.signaling,
                    "The signaling server, ws://HOST:PORT/server or wss://...")
       ->required();
   command->add_option("--token-file", options->token_file, "A file with the token that signaling knows")
       ->required();
   command->add_option(
-      "--ca-file", options->ca_file,
+      "--ca-file", options->stream.ca_file,
       "A PEM file with the authorities that may sign signaling's certificate (default: the system's)");
-  command->add_option("--bind", options->bind, "The address that WebRTC binds to (default: every address)");
+  command->add_option("--bind", options->stream.bind_address,
+                      "The address that WebRTC binds to (default: every address)");
   command->add_option(
       "--udp-port", options->udp_port,
       "The UDP port that all clients share, or a range such as 40000-40100 of which each takes one "
       "(default: any)");
   command->add_option(
-      "--public-ip", options->public_ip,
+      "--public-ip", options->stream.public_address,
       "The address at which this machine is reached from outside, where a 1:1 NAT stands before it");
   command->add_option("--rate", options->rate, "Most light maps a second")->capture_default_str();
   add_quality_options(*command, options->settings);

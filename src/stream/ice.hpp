@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "lichtveld/stream/server.hpp"
+
 namespace lichtveld::stream {
 
 // As in WebRTC's RTCIceServer, one address each: stun:HOST[:PORT], turn:HOST[:PORT][?transport=udp|tcp] or
@@ -12,12 +14,6 @@ struct IceServer {
   std::string url;
   std::string username, credential;  // of TURN
   bool operator==(const IceServer&) const = default;
-};
-
-// The UDP ports that peers may use. The same one twice: all share it.
-struct UdpPorts {
-  unsigned short first = 1024, last = 65535;
-  bool one() const { return first == last; }
 };
 
 // What one peer connection is made with.

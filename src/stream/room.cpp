@@ -26,7 +26,7 @@ Server::Room::Room(ServerOptions options)
                  refused_ = std::move(why);
                }}) {
   ice_.bind_address = options_.bind_address;
-  ice_.ports = {options_.first_udp_port, options_.last_udp_port};
+  ice_.ports = options_.udp_ports;
   tick();
   thread_ = std::jthread([this] { run(); });
 }

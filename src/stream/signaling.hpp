@@ -32,6 +32,9 @@ struct SignalingUrl {
   std::string text() const;
 };
 
+// Throws std::invalid_argument for a URL or a ca_file that is none, or that the other has no use for.
+void check_signaling(const std::string& url, const std::string& ca_file);
+
 class Signaling {
  public:
   struct Options {

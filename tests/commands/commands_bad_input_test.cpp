@@ -197,6 +197,11 @@ INSTANTIATE_TEST_SUITE_P(
                "serve --scene " + cornell + " --signaling ws://a/server --udp-port 0x50 --token-file nowhere",
                2,
                {"--udp-port 0x50", "1 to 65535"}},
+        BadUse{"ServeNoPublicAddress",
+               "serve --scene " + cornell +
+                   " --signaling ws://a/server --public-ip room.example --token-file nowhere",
+               2,
+               {"--public-ip", "room.example"}},
         BadUse{"ServeBadUrl",
                "serve --size 32 --psf 8 --scene " + cornell +
                    " --signaling gopher:hole --token-file " LICHTVELD_SOURCE_DIR "/LICENSE",

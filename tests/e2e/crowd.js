@@ -1,6 +1,7 @@
 #!/usr/bin/env node
 /**
- * Many clients in one process, which can be killed. Started by fork(); answers each message with the members' roles.
+ * Many clients in one process, which can be killed. Started by fork(); says "joined" when COUNT of them have, answers
+ * "roles" with the members' roles and {visits: N} when so many more have joined and left.
  *   node crowd.js URL COUNT
  */
 import { CrowdMember } from './crowd_member.js';
@@ -17,5 +18,30 @@ while (members.length < Number(count)) {
   const together = members.length < 2 ? 1 : Math.min(10, Number(count) - members.length);
   await Promise.all(Array.from({ length: together }, join));
 }
-process.on('message', () => process.send?.(members.map(({ role }) => role)));
+
+/** Joins and leaves; false when it was refused, as too many have come in a second. */
+const visit = () =>
+  new Promise((settle) => {
+    const end = (joined) => {
+      clearTimeout(patience);
+      member.leave();
+      settle(joined);
+    };
+    const member = new CrowdMember(url, () => end(true));
+    member.onRefused = () => setTimeout(() => end(false), 100);
+    const patience = setTimeout(() => end(false), 1500);
+  });
+async function visits(count) {
+  let left = count;
+  const one = async () => {
+    while (left > 0) if (await visit()) left -= 1;
+  };
+  await Promise.all(Array.from({ length: 3 }, one));
+}
+
+process.on('message', async (question) => {
+  if (question === 'roles') return process.send?.(members.map(({ role }) => role));
+  await visits(question.visits);
+  process.send?.('left');
+});
 process.send?.('joined');

@@ -77,6 +77,9 @@ function makeHome(t, number, nat) {
          type filter hook input priority 0; policy accept;
          iifname wan ct state new drop
        }
+       chain cut {
+         type filter hook forward priority -1
+       }
        chain inward {
          type filter hook forward priority 0; policy drop;
          iifname lan accept
@@ -98,11 +101,7 @@ END`,
     /** What passes no more, in nft's words, e.g. `udp dport 40000`. */
     block: (packets) => within(router, `nft insert rule ip home inward ${packets} drop`),
     /** The line to the internet, cut and mended. */
-    cut: () => within(router, 'nft insert rule ip home inward drop'),
-    mend: () =>
-      within(
-        router,
-        'nft flush chain ip home inward; nft add rule ip home inward iifname lan accept; nft add rule ip home inward ct state established,related accept',
-      ),
+    cut: () => within(router, 'nft add rule ip home cut drop'),
+    mend: () => within(router, 'nft flush chain ip home cut'),
   };
 }

@@ -84,3 +84,27 @@ test('a browser without WebRTC or WebGL says what is missing', async (t) => {
     await player.screenshot(`without-${name.replace(' ', '')}`);
   }
 });
+
+test('a handshake that hangs on a way that was found: the page tries again soon, and says why', async (t) => {
+  const { url, serve } = await signaling(t);
+  await serve().says('connected');
+  // We speak to a port that the server's end of the line does not have, and nobody answers.
+  const player = await (
+    await launch(t)
+  ).open(url, {
+    init: () => {
+      let first = true;
+      const take = RTCPeerConnection.prototype.setRemoteDescription;
+      RTCPeerConnection.prototype.setRemoteDescription = function (answer) {
+        const hang = first;
+        first = false;
+        return take.call(this, {
+          type: answer.type,
+          sdp: hang ? answer.sdp.replace('sctp-port:5000', 'sctp-port:5001') : answer.sdp,
+        });
+      };
+    },
+  });
+  await player.page.getByText(/a way to the render server was found/i).waitFor({ timeout: 8000 });
+  await player.until('live', ({ state }) => state === 'live');
+});

@@ -31,7 +31,7 @@ std::set<std::string> ports_of(const Client& client) {
 
 TEST_F(RoomTest, AllClientsShareOneUdpPort) {
   auto shared = options();
-  shared.first_udp_port = shared.last_udp_port = free_udp_port();
+  shared.udp_ports.first = shared.udp_ports.last = free_udp_port();
   server = std::make_unique<Server>(shared);
   wait_connected();
   server->publish({.bytes = map_bytes(100'000, 1), .places = rest});
@@ -39,7 +39,7 @@ TEST_F(RoomTest, AllClientsShareOneUdpPort) {
   for (int i = 0; i < 5; ++i) clients.push_back(std::make_unique<Client>(*relay));
   for (const auto& client : clients) {
     EXPECT_TRUE(client->wait_maps(1));
-    EXPECT_THAT(ports_of(*client), testing::ElementsAre(std::to_string(shared.first_udp_port)));
+    EXPECT_THAT(ports_of(*client), testing::ElementsAre(std::to_string(shared.udp_ports.first)));
   }
   clients.front().reset();
   Client late(*relay);
@@ -48,8 +48,7 @@ TEST_F(RoomTest, AllClientsShareOneUdpPort) {
 
 TEST_F(RoomTest, PortsAreTakenFromTheRange) {
   auto ranged = options();
-  ranged.first_udp_port = 45'100;
-  ranged.last_udp_port = 45'110;
+  ranged.udp_ports = {45'100, 45'110};
   server = std::make_unique<Server>(ranged);
   wait_connected();
   Client client(*relay);
@@ -134,10 +133,9 @@ TEST_F(RoomTest, IceServersOfTheGreetingAreUsed) {
 }
 
 TEST_F(RoomTest, BadPortsAndAddressesAreRefused) {
-  for (const auto& [first, last] : {std::pair<unsigned short, unsigned short>{0, 1}, {2, 1}}) {
+  for (const UdpPorts ports : {UdpPorts{0, 1}, UdpPorts{2, 1}}) {
     auto bad = options();
-    bad.first_udp_port = first;
-    bad.last_udp_port = last;
+    bad.udp_ports = ports;
     EXPECT_THROW(Server{bad}, std::invalid_argument);
   }
   auto bad = options();

@@ -23,11 +23,13 @@ export class Peer {
   /** The render server's id at the relay; another one after the relay or the server's line to it was new. */
   server: string;
   readonly routes: Routes;
+  readonly madeAt = performance.now();
   readonly #connection: RTCPeerConnection;
   readonly #channel: RTCDataChannel;
   /** Candidates may overtake the answer; they are of no use before it. */
   readonly #early: RTCIceCandidateInit[] = [];
   #ended = false;
+  #foundWayAt: number | undefined;
 
   constructor(
     { server, iceServers, session }: PeerOptions,
@@ -46,6 +48,10 @@ export class Peer {
     this.#connection.onconnectionstatechange = () => {
       if (this.#connection.connectionState === 'failed') this.#end();
     };
+    this.#connection.oniceconnectionstatechange = () => {
+      if (['connected', 'completed'].includes(this.#connection.iceConnectionState))
+        this.#foundWayAt ??= performance.now();
+    };
     this.#connection.onicecandidate = ({ candidate }) => {
       if (!candidate?.candidate) return;
       this.routes.addOwn(candidate.candidate);
@@ -57,6 +63,11 @@ export class Peer {
       });
     };
     this.#offer(session).catch(() => this.#end());
+  }
+
+  /** When a way to the server was found, by performance.now(); the channel still has to open. */
+  get foundWayAt(): number | undefined {
+    return this.#foundWayAt;
   }
 
   /** Takes an answer or a candidate of the server. */

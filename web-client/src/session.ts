@@ -48,6 +48,8 @@ export interface SessionEvents {
 
 /** A channel that does not open in this time [ms] will not: ICE takes well below a second on a good network. */
 const openTimeMs = 15_000;
+/** Seldom the two ends' handshake hangs on a way that was found: then a new try is the shorter way [ms]. */
+const handshakeTimeMs = 4_000;
 /** The server speaks twice a second: after this time [ms] without a word it is not called live any more ... */
 const quietMs = 2_000;
 const quietMsWhenGone = 700;
@@ -168,7 +170,6 @@ export class Session {
   #join(server: string): void {
     this.#offeredTo = server;
     this.#opened = this.#quiet = false;
-    this.#heardAt = performance.now();
     this.events.onState('joining', { reason: this.#trouble });
     const options = { server, iceServers: this.#iceServers, session: this.#secret.get() };
     this.#peer = new Peer(options, {
@@ -189,12 +190,18 @@ export class Session {
         this.events.onData(data);
       },
       onClose: () =>
-        this.#lost(this.#opened ? 'the connection to the render server was lost' : this.#noWay()),
+        this.#lost(this.#opened ? 'the connection to the render server was lost' : this.#whyNotOpen()),
     });
   }
 
-  #noWay(): string {
+  #whyNotOpen(): string {
+    if (this.#peer?.foundWayAt)
+      return 'a way to the render server was found, but the connection did not open';
     return this.#peer?.routes.describeFailure() ?? '';
+  }
+
+  #mustOpenBy({ madeAt, foundWayAt }: Peer): number {
+    return Math.min(madeAt + openTimeMs, (foundWayAt ?? Infinity) + handshakeTimeMs);
   }
 
   /** Ends a data channel that has gone silent, or that does not open. */
@@ -203,10 +210,12 @@ export class Session {
     const silent = performance.now() - this.#heardAt;
     const gone = this.#greeted && this.#server !== this.#peer.server;
     const quiet = gone ? quietMsWhenGone : quietMs;
-    const allowed = !this.#opened ? openTimeMs : gone ? silenceMsWhenGone : silenceMs;
-    if (silent > allowed) {
-      this.#cutOff = this.#opened;
-      this.#lost(this.#opened ? 'the render server went silent' : this.#noWay());
+    const allowed = gone ? silenceMsWhenGone : silenceMs;
+    if (!this.#opened && performance.now() > this.#mustOpenBy(this.#peer)) {
+      this.#lost(this.#whyNotOpen());
+    } else if (this.#opened && silent > allowed) {
+      this.#cutOff = true;
+      this.#lost('the render server went silent');
     } else if (this.#opened && silent > quiet && !this.#quiet) {
       this.#quiet = true;
       this.events.onState('silent', { reason: '' });

@@ -15,6 +15,12 @@
 
 namespace lichtveld::stream {
 
+// The UDP ports that WebRTC may use, both from 1 to 65535 and in order.
+struct UdpPorts {
+  unsigned short first = 1024, last = 65535;
+  bool one() const { return first == last; }
+};
+
 struct ServerOptions {
   std::string signaling;  // ws:// or wss://HOST[:PORT]/server
   std::string ca_file;    // PEM, the authorities that wss trusts; empty: the system's
@@ -23,9 +29,8 @@ struct ServerOptions {
   std::string scene_hash;
   // The IP address that WebRTC binds to. Empty or a wildcard (0.0.0.0): every address but the loopback ones.
   std::string bind_address;
-  // The UDP ports that WebRTC may use, both from 1 to 65535 and in order. The same one twice: all peers share
-  // it, and the server itself asks no TURN server.
-  unsigned short first_udp_port = 1024, last_udp_port = 65535;
+  // With one port all peers share it, and the server itself asks no TURN server.
+  UdpPorts udp_ports = {};
   // The IP address at which this machine is reached behind a 1:1 NAT, which clients are told beside its own.
   // Empty: none.
   std::string public_address;
@@ -41,9 +46,10 @@ struct ServerOptions {
   std::function<Work()> work;
 };
 
-// Throws std::invalid_argument for a URL or a ca_file that is none, or that the other has no use for: what
-// Server's constructor would throw, before anything costly is made for it.
-void check_signaling(const std::string& url, const std::string& ca_file);
+// Throws std::invalid_argument for a signaling URL, ca_file, bind address, ports or public address that are
+// none: what Server's constructor would throw, before anything costly is made for it. The rest may still be
+// missing.
+void check_addresses(const ServerOptions& options);
 
 // What /metrics and the log show; counts since the start.
 struct ServerStatistics {
