@@ -1,7 +1,8 @@
 #!/usr/bin/env node
 /**
  * Many clients in one process, which can be killed. Started by fork(); says "joined" when COUNT of them have, answers
- * "roles" with the members' roles and {visits: N} when so many more have joined and left.
+ * "roles" with the members' roles, {play: MILLISECONDS} with what lies between the light maps of the first one, who moves
+ * so long, and {visits: N} when so many more have joined and left.
  *   node crowd.js URL COUNT
  */
 import { CrowdMember } from './crowd_member.js';
@@ -39,8 +40,23 @@ async function visits(count) {
   await Promise.all(Array.from({ length: 3 }, one));
 }
 
+/** The first member moves to and fro for so many milliseconds; those between one light map and the next. */
+async function mapIntervals(duration) {
+  const times = [];
+  const [player] = members;
+  player.onMap = () => times.push(performance.now());
+  const end = performance.now() + duration;
+  for (let step = 0; performance.now() < end; step += 1) {
+    player.move(step % 2 ? 'left' : 'right');
+    await new Promise((proceed) => setTimeout(proceed, 30));
+  }
+  player.onMap = () => {};
+  return times.slice(1).map((time, i) => time - times[i]);
+}
+
 process.on('message', async (question) => {
   if (question === 'roles') return process.send?.(members.map(({ role }) => role));
+  if (question.play) return process.send?.(await mapIntervals(question.play));
   await visits(question.visits);
   process.send?.('left');
 });

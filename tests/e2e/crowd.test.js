@@ -1,7 +1,7 @@
 // A full room, and many who come and go. VISITS is how many join and leave: 1000 takes two minutes.
 //   VISITS=1000 tests/e2e/run.sh tests/e2e/crowd.test.js
 import assert from 'node:assert/strict';
-import { fork } from 'node:child_process';
+import { fork, spawn } from 'node:child_process';
 import { once } from 'node:events';
 import { readFileSync, readdirSync } from 'node:fs';
 import { join } from 'node:path';
@@ -30,6 +30,8 @@ async function crowd(t, url, count) {
     roles: () => ask('roles'),
     /** So many join and leave, some at a time. */
     visits: (visits) => ask({ visits }),
+    /** The first one moves; milliseconds between one light map and the next. */
+    mapIntervals: (play) => ask({ play }),
   };
 }
 
@@ -121,5 +123,25 @@ test(`${visitCount} joins and leaves: nothing grows`, async (t) => {
     assert.ok(after.memory < before[i].memory + 24, 'memory grows');
     assert.ok(after.files <= before[i].files + 2, 'files stay open');
     assert.ok(after.threads <= before[i].threads, 'threads stay');
+  }
+});
+
+test('who attacks signaling does not hold up the light', async (t) => {
+  const { url, serve } = await signaling(t);
+  await serve('--rate', '20').says('serving');
+  const player = await crowd(t, url, 1);
+  const median = (values) => values.sort((a, b) => a - b)[values.length >> 1];
+  await player.mapIntervals(500);
+  for (const attack of ['pipelined', 'unread', 'half-sent', 'rejoining', 'flooding']) {
+    const before = median(await player.mapIntervals(2000));
+    const args = [join(root, 'signaling/test/attacker.js'), attack, new URL(url).port, '127.0.0.2'];
+    const villain = spawn(process.execPath, args, { stdio: ['ignore', 'pipe', 'inherit'] });
+    t.after(() => villain.kill('SIGKILL'));
+    await once(villain.stdout, 'data');
+    const during = median(await player.mapIntervals(2000));
+    villain.kill('SIGKILL');
+    t.diagnostic(`${attack}: a map every ${before.toFixed(1)} ms, then every ${during.toFixed(1)} ms`);
+    // Two cores are shared with the attacker and whatever else runs here: a wide bound, and the figures above.
+    assert.ok(during < 2 * before, `${attack}: a map every ${during} ms`);
   }
 });

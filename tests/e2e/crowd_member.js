@@ -8,6 +8,8 @@ const patienceMs = 3000;
 export class CrowdMember {
   /** The newest role message. */
   role;
+  /** Called for each light map that has come whole. */
+  onMap = () => {};
   /** Called when the relay does not let it in. */
   onRefused = () => {};
   #socket;
@@ -77,7 +79,12 @@ export class CrowdMember {
     connection.onLocalCandidate((candidate, mid) => this.#send({ type: 'candidate', candidate, mid }));
     // Messages that nobody takes would fill the library's queue, and then block its threads.
     this.#channel = connection.createDataChannel('lichtveld');
-    this.#channel.onMessage(() => {});
+    this.#channel.onMessage((message) => message === 'PNG_TRANSFER_COMPLETE' && this.onMap());
+  }
+
+  /** @param {'left' | 'right' | 'up' | 'down'} direction  of its cube */
+  move(direction) {
+    this.#channel.sendMessage(direction);
   }
 
   #dropConnection() {
