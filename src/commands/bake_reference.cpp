@@ -23,7 +23,7 @@ Baked bake_reference(const BakeOptions& options, const BakeJob& job) {
   Baked baked{.irradiance = traced.texels, .shown = {}, .report = {}};
   if (!options.png.empty()) {
     const gpu::Device device(options.device);
-    baked.shown = lightfield::present(device, job.scene, job.moved(), {traced.texels, options.settings.size});
+    baked.shown = lightfield::present(device, job.scene, {traced.texels, options.settings.size});
     check_validation(device);
   }
   baked.report = {

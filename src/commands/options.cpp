@@ -107,6 +107,14 @@ void add_light_field_options(CLI::App& command, lightfield::Settings& settings) 
              "Of --method thesis, and asks for it: how a texel finds its layer: sorting them, or scanning for "
              "the nearest in front");
   command
+      .add_option("--sets", settings.rays.sets,
+                  "Of --method rays: sets of directions that neighbouring texels share out: 16, 4, or 1: all look along the "
+                  "same ones")
+      ->capture_default_str();
+  add_choice(command, "--direct", settings.direct, lightfield::words_of_directs(),
+             "Of --method rays: light straight from lamps in closed form, with exact shadows, or by the directions as all "
+             "other light");
+  command
       .add_option(
           "--layers", settings.layers,
           "Layers that a PSF pixel keeps, 1..128; pixels with more are counted, and room is made for them")

@@ -4,6 +4,7 @@
 
 #include "lichtveld/lightfield/engine.hpp"
 #include "links/links.hpp"
+#include "rays/rays.hpp"
 #include "thesis/thesis.hpp"
 
 namespace lichtveld::lightfield {
@@ -20,6 +21,7 @@ std::unique_ptr<LightField> make(const gpu::Device& device, const scene::Scene& 
 constexpr std::array all = {
     Engine{"thesis", "every PSF rendered afresh in every bounce", make<Thesis>},
     Engine{"links", "what each texel sees is kept, a move redoes only what it touched", make<Links>},
+    Engine{"rays", "the same found by rays, wholly on the CPU, with exact light from lamps", make<Rays>},
 };
 
 }  // namespace

@@ -21,10 +21,10 @@ constexpr float grazing_cosine = 0.01f;
 constexpr float facing_cosine = 0.99f;
 
 // What the filter needs to know about a ray.
-struct Query : QueryContext {
+struct Query : scene::QueryContext {
   Query(const Geometry& geometry, const Receiver& from, float behind)
       : geometry(geometry), from(from), behind(behind) {
-    init(*this);
+    scene::init(*this);
   }
   const Geometry& geometry;
   const Receiver& from;
@@ -74,8 +74,7 @@ EmbreeScene::EmbreeScene(const Geometry& geometry)
     throw std::runtime_error("Embree does not start: error " +
                              std::to_string(rtcGetDeviceError(device_.get())));
   rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_ROBUST);  // no gaps along shared edges
-  const std::unique_ptr<RTCGeometryTy, Release> triangles(
-      rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE));
+  const scene::EmbreeGeometry triangles(rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE));
   fill(triangles.get(), RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, sizeof(glm::vec3), geometry.positions(),
        device_.get(), geometry);
   fill(triangles.get(), RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, 3 * sizeof(std::uint32_t), geometry.indices(),
@@ -101,7 +100,7 @@ std::optional<Hit> EmbreeScene::nearest(const Receiver& from, const glm::vec3& d
   ray.ray.mask = ~0u;
   ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   Query query(geometry_, from, back);
-  intersect(scene_.get(), query, ray);
+  scene::intersect(scene_.get(), query, ray);
   if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
   return Hit{ray.hit.primID, {ray.hit.u, ray.hit.v}};
 }

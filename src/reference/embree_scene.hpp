@@ -4,8 +4,8 @@
 #include <memory>
 #include <optional>
 
-#include "embree.hpp"
 #include "geometry.hpp"
+#include "lichtveld/scene/embree.hpp"
 
 namespace lichtveld::reference {
 
@@ -20,14 +20,9 @@ class EmbreeScene {
   std::optional<Hit> nearest(const Receiver& from, const glm::vec3& direction) const;
 
  private:
-  struct Release {
-    void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
-    void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
-    void operator()(RTCGeometry geometry) const { rtcReleaseGeometry(geometry); }
-  };
   const Geometry& geometry_;
-  std::unique_ptr<RTCDeviceTy, Release> device_;
-  std::unique_ptr<RTCSceneTy, Release> scene_;
+  scene::EmbreeDevice device_;
+  scene::EmbreeTree scene_;
 };
 
 }  // namespace lichtveld::reference

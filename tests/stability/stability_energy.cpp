@@ -28,13 +28,16 @@ Case furnace_of(const std::string& name, double albedo, unsigned bounces) {
           {"mean E",
            exact,
            [](const Texels& map) { return mean(map); },
-           {{{0.015}, {1e-4}, {0.005}}},
+           {{{0.015}, {1e-4}, {0.005}, {1e-4}}},
            "rows of the transport sum to one, so that the list owes rounding alone; the stencil's silhouettes "
            "are 1 pixel of 18 across a wall, and lose a part of them; the reference has noise."},
           {"share of texels over 1 % off",
            0,
-           [=](const Texels& map) { return share_off(map, [=](const Texel&) { return exact; }, 0.01); },
-           {{{0.01, 0.12}, {0.01}, {0.01}}},
+           [=](const Texels& map) {
+             return share_off(
+                 map, [=](const Texel&) { return exact; }, 0.01);
+           },
+           {{{0.01, 0.12}, {0.01}, {0.01}, {0.01}}},
            "rows sum to one whatever is seen, so that nothing but a lost ray can spoil a texel: under 1 % of "
            "them may have one. The reference's own noise is taken off first.",
            silhouettes}}};
@@ -51,7 +54,7 @@ Case radiance_of(const std::string& name, float emission) {
           .figures = {{"mean E",
                        pi * emission * geometric_sum(0.5, 3),
                        [](const Texels& map) { return mean(map); },
-                       {{{0.02}, {1e-4}, {0.01}}},
+                       {{{0.02}, {1e-4}, {0.01}, {1e-4}}},
                        "32-bit floats scale without loss; otherwise as the furnace, with half the pixels."}}};
 }
 
@@ -96,14 +99,14 @@ Case integrating_sphere() {
           {"mean E over the area",
            exact,
            [](const Texels& map) { return mean(map); },
-           {{{0.02, 0.05}, {0.02}, {0.01}}},
+           {{{0.02, 0.05}, {0.02}, {0.01}, {0.001}}},
            "2 %: a row of the transport is divided by its own weights, so that rows sum to one but columns do "
            "not quite: what arrives from the cap is what the directions from there happen to carry.",
            silhouettes},
           {"rel_rmse",
            0,
            [=](const Texels& map) { return rel_rmse(map, [=](const Texel&) { return exact; }); },
-           {{{0.05, 0.25}, {0.05, 0.25}, {0.05}}},
+           {{{0.05, 0.25}, {0.05, 0.25}, {0.05}, {0.05}}},
            "5 %, as the Cornell room has at 384 PSFs; that the sphere has facets makes 2 %.",
            "the cap is a small lamp: 3 of a texel's 192 directions hit it. More `--psf`."}}};
 }
@@ -132,20 +135,20 @@ Case concentric_spheres() {
           .figures = {{"inner, from outer",
                        pi * 5,
                        [](const Texels& map) { return mean(of(map, "inner"), 2); },
-                       {{{0.015}, {1e-3}, {0.001}}},
+                       {{{0.015}, {1e-3}, {0.001}, {1e-3}}},
                        "all that the inner sphere sees glows: rows sum to one, as in the furnace. But near the "
                        "edge of a facet a pixel's centre can see the next facet, in grazing directions, which "
                        "carry 1e-3 of the light at most."},
                       {"outer, from inner",
                        pi * 10 * seen,
                        [](const Texels& map) { return mean(of(map, "outer"), 0); },
-                       {{{0.02}, {0.01}, {0.01}}},
+                       {{{0.02}, {0.01}, {0.01}, {0.01}}},
                        "the outline of the inner sphere holds 96 of 384 directions, and is averaged over 1000 "
                        "texels; of its 20 pixels across, one is silhouette."},
                       {"outer, from itself",
                        pi * 5 * (1 - seen),
                        [](const Texels& map) { return mean(of(map, "outer"), 2); },
-                       {{{0.02}, {0.01}, {0.01}}},
+                       {{{0.02}, {0.01}, {0.01}, {0.01}}},
                        "the rest of the same."}}};
 }
 

@@ -31,7 +31,7 @@ Case odd_squares(const std::string& name, const std::string& formula,
           .figures = {{"mean E of the floor",
                        pi * parallel_squares * le,
                        [](const Texels& map) { return mean(of(map, "floor")); },
-                       {{{0.02, known_stencil}, {0.02}, {0.002}}},
+                       {{{0.02, known_stencil}, {0.02}, {0.002}, {0.001}}},
                        "as the parallel squares: nothing about the light has changed.",
                        known}}};
 }
@@ -64,7 +64,7 @@ Case contact() {
                                            })) /
                                 (pi * le);
                        },
-                       {{{0, 0.06}, {0}, {0}}},
+                       {{{0, 0.06}, {0}, {0}, {0}}},
                        "exactly 0: equal depths count as in front.",
                        "where the lamp's outline crosses a pixel, some of its samples count one layer less, so "
                        "that the lid is the second layer of some samples, the first of others, and kept in "
@@ -95,7 +95,7 @@ Case touching_charts() {
       .figures = {{"mean of the dark floor over the lit one",
                    0,
                    [](const Texels& map) { return mean(of(map, "dark floor")) / mean(of(map, "floor")); },
-                   {{{0, 0.03}, {0, 0.02}, {0}}},
+                   {{{0, 0.03}, {0, 0.02}, {0}, {0}}},
                    "exactly 0: nothing that glows faces the dark floor.",
                    "a surface's radiance is read from the map with bilinear filtering, which takes in half a "
                    "texel of the neighbouring chart. Unwrap with gutters of two texels."}}};
@@ -118,15 +118,16 @@ Case edge_texels() {
       .psf = 96,
       .bounces = 1,
       .spp = 64,
-      .figures = {{"share of texels over 1 % off",
-                   0,
-                   [](const Texels& map) {
-                     return share_off(
-                         map, [](const Texel&) { return pi; }, 0.01);
-                   },
-                   {{{0.01, 0.3}, {0.01}, {0.01}}},
-                   "a hundredth of the texels: those in the very corners are on no side of three walls at once.",
-                   "layers are lost along outlines, as in the other rooms, and here every edge of the room is one."}}};
+      .figures = {
+          {"share of texels over 1 % off",
+           0,
+           [](const Texels& map) {
+             return share_off(
+                 map, [](const Texel&) { return pi; }, 0.01);
+           },
+           {{{0.01, 0.3}, {0.01}, {0.01}, {0.01}}},
+           "a hundredth of the texels: those in the very corners are on no side of three walls at once.",
+           "layers are lost along outlines, as in the other rooms, and here every edge of the room is one."}}};
 }
 
 }  // namespace

@@ -34,7 +34,7 @@ std::string percent_or_absolute(const Row& row, double tolerance) {
 
 std::string tolerances(const Row& row) {
   std::string text;
-  for (const auto method : {stencil, list, reference})
+  for (const auto method : {stencil, list, rays, reference})
     text += (text.empty() ? "" : ", ") + percent_or_absolute(row, row.figure.limits[method].tolerance);
   return text;
 }
@@ -46,7 +46,7 @@ std::string failed(const Row& row, Method method, const char* mark) {
 // What the methods that fail are off by, and what they may be.
 std::string bounds(const Row& row) {
   std::string text;
-  for (const auto method : {stencil, list, reference}) {
+  for (const auto method : {stencil, list, rays, reference}) {
     const auto& limit = row.figure.limits[method];
     if (!limit.known) continue;
     text += (text.empty() ? "" : "; ") + std::string(method_names[method]) + " " + with_error(row, method) +
@@ -62,15 +62,15 @@ void Table::add(const Case& of, std::vector<Row> rows) {
 }
 
 void Table::print() const {
-  std::printf("\n%-70s %9s  %-22s %-22s %-22s %s\n", "case, what is measured", "expected",
-              method_names[stencil], method_names[list], method_names[reference],
+  std::printf("\n%-70s %9s  %-22s %-22s %-22s %-22s %s\n", "case, what is measured", "expected",
+              method_names[stencil], method_names[list], method_names[rays], method_names[reference],
               "tolerance of each (! known failure)");
   for (const auto& entry : cases_)
     for (const auto& row : entry.rows)
-      std::printf("%-70s %9s  %-22s %-22s %-22s %s\n", (row.name + ": " + row.figure.measured).c_str(),
+      std::printf("%-70s %9s  %-22s %-22s %-22s %-22s %s\n", (row.name + ": " + row.figure.measured).c_str(),
                   number(row.figure.expected, "%.4g").c_str(), failed(row, stencil, " !").c_str(),
-                  failed(row, list, " !").c_str(), failed(row, reference, " !").c_str(),
-                  tolerances(row).c_str());
+                  failed(row, list, " !").c_str(), failed(row, rays, " !").c_str(),
+                  failed(row, reference, " !").c_str(), tolerances(row).c_str());
 }
 
 // Written beside its place and renamed, as all the project's files are.
@@ -80,19 +80,20 @@ void Table::write_markdown(const std::filesystem::path& file) const {
           "# Stability\n\n"
           "Small scenes with an exact answer, and what each method makes of them. Behind a value stands what "
           "it is "
-          "off by;\nwhere 0 is expected the value is its own error. The tolerances are those of the three "
+          "off by;\nwhere 0 is expected the value is its own error. The tolerances are those of the four "
           "methods in "
           "turn, and **bold** is a\nknown failure: a value outside its tolerance, for the reason that stands "
           "below. "
           "[limits.md](limits.md) says what\nhelps. `ctest --preset release -L stability` holds every value to "
           "its "
           "tolerance, and every known failure to the bound\nthat stands beside it.\n\n"
-          "| case | what is measured | expected | thesis (stencil) | thesis (list) | reference | tolerances |\n"
-          "|---|---|---|---|---|---|---|\n";
+          "| case | what is measured | expected | thesis (stencil) | thesis (list) | rays | reference | "
+          "tolerances |\n"
+          "|---|---|---|---|---|---|---|---|\n";
   for (const auto& [of, rows] : cases_)
     for (const auto& row : rows) {
       text << "| " << row.name << " | " << row.figure.measured << " | " << number(row.figure.expected, "%.4g");
-      for (const auto method : {stencil, list, reference}) {
+      for (const auto method : {stencil, list, rays, reference}) {
         const char* mark = row.figure.limits[method].known ? "**" : "";
         text << " | " << mark << with_error(row, method) << mark;
       }

@@ -10,7 +10,7 @@ namespace lichtveld::stability {
 struct Row {
   std::string name;  // of the case
   Figure figure;
-  std::array<double, 3> values, errors;  // by Method
+  std::array<double, 4> values, errors;  // by Method
 };
 
 class Table {

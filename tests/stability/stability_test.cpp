@@ -1,4 +1,4 @@
-// Every case by each method: thesis with both A-buffers, and the reference.
+// Every case by each method: thesis with both A-buffers, rays, and the reference.
 //   test_stability [--markdown FILE]
 #include <gtest/gtest.h>
 
@@ -32,22 +32,22 @@ class Stability : public testing::WithDevice, public ::testing::WithParamInterfa
           lichtveld::reference::trace(scene, {}, {.size = of.size, .bounces = of.bounces, .spp = of.spp});
       return testing::texels(scene, of.size, light.texels, light.standard_error);
     }
-    const auto thesis = lightfield::make_light_field(
-        "thesis", device(), scene,
+    const auto light = lightfield::make_light_field(
+        method == rays ? "rays" : "thesis", device(), scene,
         {.size = of.size,
          .psf = of.psf,
          .bounces = of.bounces,
          .thesis = {.abuffer = method == stencil ? lightfield::ABuffer::stencil : lightfield::ABuffer::list,
                     .sort = lightfield::Sort::scan}});
-    thesis->settle();
-    return testing::texels(scene, of.size, thesis->irradiance(), {});
+    light->settle();
+    return testing::texels(scene, of.size, light->irradiance(), {});
   }
 
   std::vector<Row> measured(const Case& of) {
     std::vector<Row> rows;
-    for (const auto& figure : of.figures) rows.push_back({of.name, figure, {}, {-1, -1, -1}});
+    for (const auto& figure : of.figures) rows.push_back({of.name, figure, {}, {-1, -1, -1, -1}});
     for (const auto& scene : of.scenes())
-      for (const auto method : {stencil, list, reference}) {
+      for (const auto method : {stencil, list, rays, reference}) {
         const auto map = baked(of, scene, method);
         for (auto& row : rows) {
           const double value = row.figure.value(map), off = error(value, row.figure.expected);
@@ -64,7 +64,7 @@ TEST_P(Stability, HoldsItsTolerances) {
   const auto rows = measured(GetParam());
   table.add(GetParam(), rows);
   for (const auto& row : rows)
-    for (const auto method : {stencil, list, reference}) {
+    for (const auto method : {stencil, list, rays, reference}) {
       const auto& limit = row.figure.limits[method];
       const auto what = row.name + ", " + row.figure.measured + ", " + method_names[method] + ": " +
                         std::to_string(row.values[method]) + " instead of " +

@@ -37,6 +37,11 @@ const std::map<std::string, Weights>& words_of_weights() {
   return words;
 }
 
+const std::map<std::string, Direct>& words_of_directs() {
+  static const std::map<std::string, Direct> words = {{"exact", Direct::exact}, {"psf", Direct::psf}};
+  return words;
+}
+
 std::string name_of(ABuffer abuffer) {
   return word_of(words_of_abuffers(), abuffer);
 }
@@ -45,6 +50,9 @@ std::string name_of(Sort sort) {
 }
 std::string name_of(Weights weights) {
   return word_of(words_of_weights(), weights);
+}
+std::string name_of(Direct direct) {
+  return word_of(words_of_directs(), direct);
 }
 
 std::uint32_t PsfSize::pixels(std::uint32_t size) const {
@@ -70,6 +78,9 @@ void check(const Settings& settings) {
         std::to_string(settings.links.step_bounces) +
         " bounces a step: there must be 0.125, 0.25, 0.5 or a whole number of them, up to " +
         std::to_string(most_step_bounces));
+  if (settings.rays.sets != 1 && settings.rays.sets != 4 && settings.rays.sets != 16)
+    throw std::invalid_argument(std::to_string(settings.rays.sets) +
+                                " sets of directions: there must be 1, 4 or 16");
   if (settings.bounces == 0u)
     throw std::invalid_argument("0 bounces: 1 is direct light alone, 2 adds one reflection");
 }

@@ -8,6 +8,44 @@
 
 namespace lichtveld::lightfield {
 
+std::vector<std::uint32_t> surface_of_triangles(const scene::Scene& scene) {
+  std::vector<std::uint32_t> surfaces(scene.indices.size() / 3);
+  for (std::uint32_t surface = 0; surface < scene.surfaces.size(); ++surface) {
+    const auto first = scene.surfaces[surface].first_index / 3, count = scene.surfaces[surface].index_count / 3;
+    std::fill_n(surfaces.begin() + first, count, surface);
+  }
+  return surfaces;
+}
+
+TexelRecord record_at(const scene::Scene& scene, std::uint32_t size, const scene::SurfacePoint& point,
+                      std::uint32_t surface_index, std::uint32_t atlas) {
+  const auto& surface = scene.surfaces[surface_index];
+  const auto& material = scene.materials[surface.material];
+  const auto corner = [&](std::size_t k) -> const scene::Vertex& {
+    return scene.vertices[scene.indices[std::size_t{3} * point.triangle + k]];
+  };
+  const scene::Vertex &a = corner(0), &b = corner(1), &c = corner(2);
+  const glm::vec3 w = scene::weights(point);
+  const glm::vec3 cross = glm::cross(b.position - a.position, c.position - a.position);
+  const glm::vec3 face = glm::length(cross) > 0 ? glm::normalize(cross) : glm::vec3(0);
+  const glm::vec3 normal = w.x * a.normal + w.y * b.normal + w.z * c.normal;
+  const glm::vec3 facing = glm::dot(face, normal) < 0 ? -face : face;
+  const float length = glm::length(normal);
+  // Metres a texel along the atlas' u and v: the triangle's edges are these times the edges of its chart.
+  const glm::mat2 chart(b.atlas - a.atlas, c.atlas - a.atlas);
+  const glm::mat2x3 along = glm::mat2x3(b.position - a.position, c.position - a.position) * glm::inverse(chart);
+  return {.position = w.x * a.position + w.y * b.position + w.z * c.position,
+          .normal = length > 0 ? normal / length : facing,
+          .face = facing,
+          .albedo = scene::albedo_at(scene, material, point),
+          .emission = material.emission,
+          .side = std::max(glm::length(along[0]), glm::length(along[1])) / static_cast<float>(size),
+          .triangle = point.triangle,
+          .surface = surface_index,
+          .body = surface.body,
+          .atlas = atlas};
+}
+
 namespace {
 
 // Atlas texels a side of a block that is numbered together.
@@ -24,44 +62,6 @@ void in_blocks(std::uint32_t size, const Each& each) {
                             y = top + (code >> 1 & 1) + (code >> 2 & 2) + (code >> 3 & 4);
         if (x < size && y < size) each(y * size + x);
       }
-}
-
-std::vector<std::uint32_t> surface_of_triangles(const scene::Scene& scene) {
-  std::vector<std::uint32_t> surfaces(scene.indices.size() / 3);
-  for (std::uint32_t surface = 0; surface < scene.surfaces.size(); ++surface) {
-    const auto first = scene.surfaces[surface].first_index / 3, count = scene.surfaces[surface].index_count / 3;
-    std::fill_n(surfaces.begin() + first, count, surface);
-  }
-  return surfaces;
-}
-
-TexelRecord record_of(const scene::Scene& scene, std::uint32_t size, const scene::AtlasTexel& texel,
-                      std::uint32_t surface_index) {
-  const auto& surface = scene.surfaces[surface_index];
-  const auto& material = scene.materials[surface.material];
-  const auto corner = [&](std::size_t k) -> const scene::Vertex& {
-    return scene.vertices[scene.indices[std::size_t{3} * texel.at.triangle + k]];
-  };
-  const scene::Vertex &a = corner(0), &b = corner(1), &c = corner(2);
-  const glm::vec3 w = scene::weights(texel.at);
-  const glm::vec3 cross = glm::cross(b.position - a.position, c.position - a.position);
-  const glm::vec3 face = glm::length(cross) > 0 ? glm::normalize(cross) : glm::vec3(0);
-  const glm::vec3 normal = w.x * a.normal + w.y * b.normal + w.z * c.normal;
-  const glm::vec3 facing = glm::dot(face, normal) < 0 ? -face : face;
-  const float length = glm::length(normal);
-  // Metres a texel along the atlas' u and v: the triangle's edges are these times the edges of its chart.
-  const glm::mat2 chart(b.atlas - a.atlas, c.atlas - a.atlas);
-  const glm::mat2x3 along = glm::mat2x3(b.position - a.position, c.position - a.position) * glm::inverse(chart);
-  return {.position = w.x * a.position + w.y * b.position + w.z * c.position,
-          .normal = length > 0 ? normal / length : facing,
-          .face = facing,
-          .albedo = scene::albedo_at(scene, material, texel.at),
-          .emission = material.emission,
-          .side = std::max(glm::length(along[0]), glm::length(along[1])) / static_cast<float>(size),
-          .triangle = texel.at.triangle,
-          .surface = surface_index,
-          .body = surface.body,
-          .atlas = texel.index};
 }
 
 std::vector<TexelRecord> records_of(const scene::Scene& scene, std::uint32_t size) {
@@ -83,7 +83,7 @@ std::vector<TexelRecord> records_of(const scene::Scene& scene, std::uint32_t siz
       if (at[atlas] == no_record) return;
       const auto& texel = texels[at[atlas]];
       if (Lamps::is_lamp(emission_of(texel), brightest) == lamps)
-        records.push_back(record_of(scene, size, texel, surfaces[texel.at.triangle]));
+        records.push_back(record_at(scene, size, texel.at, surfaces[texel.at.triangle], texel.index));
     });
   return records;
 }

@@ -8,6 +8,7 @@
 
 #include "core/lamps.hpp"
 #include "lichtveld/scene/scene.hpp"
+#include "lichtveld/scene/surface_point.hpp"
 
 namespace lichtveld::lightfield {
 
@@ -27,6 +28,13 @@ struct TexelRecord {
   std::uint32_t body;
   std::uint32_t atlas;  // row * size + column of the texel that it is; no_atlas_texel for what is no texel
 };
+
+// What is at a point of a surface, which an atlas of size * size texels shows at `atlas`.
+TexelRecord record_at(const scene::Scene& scene, std::uint32_t size, const scene::SurfacePoint& point,
+                      std::uint32_t surface, std::uint32_t atlas);
+
+// Of each triangle of Scene::indices.
+std::vector<std::uint32_t> surface_of_triangles(const scene::Scene& scene);
 
 // Lamps come first, so that a number tells whether its place is one. Texels follow in blocks of the atlas, so
 // that consecutive ones lie together on a surface.

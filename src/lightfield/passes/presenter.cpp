@@ -1,29 +1,35 @@
-#include "lichtveld/lightfield/presenter.hpp"
+#include "passes/presenter.hpp"
 
-#include "passes/brdf.hpp"
-#include "passes/geometry_texture.hpp"
-#include "passes/tone_map.hpp"
+#include "lichtveld/lightfield/presenter.hpp"
 
 namespace lichtveld::lightfield {
 
-Shown present(const gpu::Device& device, const scene::Scene& scene, const scene::Offsets& offsets,
-              const TexelView& irradiance) {
-  const TexelRecords records(scene, irradiance.width());
+Presenter::Presenter(const gpu::Device& device, const scene::Scene& scene, const TexelRecords& records)
+    : device_(device), map_(device, records), geometry_texture_(device), brdf_(device), tone_map_(device) {
+  // Where bodies are changes nothing of what is shown here: albedo, emission, and which texels face the same
+  // way.
   Geometry geometry(device, scene);
-  const LightMap map(device, records);
-  const GeometryTexture geometry_texture(device);
-  const Brdf brdf(device);
-  const ToneMap tone_map(device);
-  irradiance.copy_to(device, map.total_irradiance);
-  geometry.place(offsets, map.size);
+  geometry.place(scene::Offsets(scene.bodies.size(), glm::vec3(0)), map_.size);
   gpu::Frame frame(device);
-  frame.clear("present", map.cover, {});
-  geometry_texture.record(frame, geometry, map, {});
-  geometry_texture.find_shown(frame, map);
-  brdf.record(frame, map);
-  tone_map.record(frame, map);
+  frame.clear("present", map_.cover, {});
+  geometry_texture_.record(frame, geometry, map_, {});
   frame.submit_and_wait();
-  return download_presented(device, map);
+}
+
+Shown Presenter::show(const TexelView& irradiance, std::span<const float> covered) {
+  irradiance.copy_to(device_, map_.total_irradiance);
+  if (!covered.empty()) gpu::fill<float>(device_, map_.cover, covered);
+  gpu::Frame frame(device_, {"present"});
+  geometry_texture_.find_shown(frame, map_);
+  brdf_.record(frame, map_);
+  tone_map_.record(frame, map_);
+  frame.submit_and_wait();
+  return download_presented(device_, map_);
+}
+
+Shown present(const gpu::Device& device, const scene::Scene& scene, const TexelView& irradiance) {
+  const TexelRecords records(scene, irradiance.width());
+  return Presenter(device, scene, records).show(irradiance);
 }
 
 }  // namespace lichtveld::lightfield

@@ -9,8 +9,7 @@
 namespace lichtveld::lightfield {
 
 // Tone-maps the radiance that follows from an irradiance wherever it was computed (rgb: E [W m^-2]), as wide as
-// the atlas; body i is shifted by offsets[i] [m], one entry a body.
-Shown present(const gpu::Device& device, const scene::Scene& scene, const scene::Offsets& offsets,
-              const TexelView& irradiance);
+// the atlas.
+Shown present(const gpu::Device& device, const scene::Scene& scene, const TexelView& irradiance);
 
 }  // namespace lichtveld::lightfield

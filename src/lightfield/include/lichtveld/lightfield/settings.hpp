@@ -12,14 +12,18 @@ enum class ABuffer { stencil, list };
 enum class Sort { bitonic, compare_swap, scan };  // as SORT_* in shaders/include/shared.h
 // A direction's share: its solid angle (the thesis' correction factor), or the same for all.
 enum class Weights { solid_angle, equal };
+// Light straight from lamps: in closed form, with shadows by sample points; or by the directions, as all other light.
+enum class Direct { exact, psf };
 
 // The words for them, on the command line and in tables.
 const std::map<std::string, ABuffer>& words_of_abuffers();
 const std::map<std::string, Sort>& words_of_sorts();
 const std::map<std::string, Weights>& words_of_weights();
+const std::map<std::string, Direct>& words_of_directs();
 std::string name_of(ABuffer abuffer);
 std::string name_of(Sort sort);
 std::string name_of(Weights weights);
+std::string name_of(Direct direct);
 
 // What the A-buffer can hold: the stencil counts a pixel's layers in 8 bits.
 constexpr std::uint32_t most_layers = 128;
@@ -35,6 +39,12 @@ struct LinksSettings {
   // Bounces of the map after a move, 1.., or 0.5, 0.25 or 0.125: over that share of the directions, in turn,
   // and over all of them beside what has moved. Light straight from lamps is always of all.
   float step_bounces = 0.125f;
+};
+
+// Of the engine `rays`.
+struct RaysSettings {
+  // Sets of directions that neighbouring texels share out among themselves: 1, 4 (blocks of 2 x 2) or 16 (4 x 4).
+  std::uint32_t sets = 16;
 };
 
 // The side of a PSF's raster: so many pixels, or so many times the light map's texels.
@@ -58,6 +68,8 @@ struct Settings {
   std::uint64_t seed = 0;  // of the directions' rotations and rasters: the same seed gives the same light map
   ThesisSettings thesis = {};
   LinksSettings links = {};
+  RaysSettings rays = {};
+  Direct direct = Direct::exact;  // of `rays`
 
   std::uint32_t raster() const { return psf_size > 0 ? psf_size : size; }  // of a PSF [pixels a side]
 };

@@ -1,0 +1,112 @@
+#include "rays/block_filter.hpp"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace lichtveld::lightfield {
+
+namespace {
+
+constexpr std::uint32_t rows_of_a_task = 256;
+// Of the harmonic mean of what a texel sees.
+constexpr float reach_share = 0.5f;
+// A plane is fitted to the texels around if they are spread at least so well both ways, in squares of a texel.
+constexpr float least_spread = 0.2f;
+
+template <typename Each>
+void for_each(std::uint32_t count, const Each& each) {
+  tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, count, rows_of_a_task),
+                    [&](const tbb::blocked_range<std::uint32_t>& some) {
+                      for (std::uint32_t i = some.begin(); i < some.end(); ++i) each(i);
+                    });
+}
+
+float harmonic_mean(std::span<const float> distances) {
+  float sum = 0;
+  for (const float distance : distances) sum += 1 / distance;
+  return static_cast<float>(distances.size()) / sum;
+}
+
+}  // namespace
+
+BlockFilter::BlockFilter(const Rows& rows, const RayLinks& links, std::uint32_t side)
+    : rows_(rows),
+      links_(links),
+      radius_(static_cast<int>(side) / 2),
+      reach_(rows.count()),
+      taps_(side > 1 ? rows.count() : 0) {}
+
+void BlockFilter::renew(std::span<const std::uint32_t> rows) {
+  if (taps_.empty()) return;
+  std::vector<std::uint32_t> changed(rows.begin(), rows.end());
+  std::vector<char> opened_or_closed(rows.size());
+  for_each(static_cast<std::uint32_t>(rows.size()), [&](std::uint32_t i) {
+    const auto row = rows[i];
+    const bool buried = links_.buried(row);
+    opened_or_closed[i] = buried != (reach_[row] <= 0);
+    reach_[row] = buried ? 0 : reach_share * harmonic_mean(links_.distances(row));
+  });
+  // Nobody takes from what is buried.
+  for (std::uint32_t i = 0; i < rows.size(); ++i)
+    if (opened_or_closed[i])
+      rows_.for_each_around(rows[i], radius_, [&](std::uint32_t other, int, int) { changed.push_back(other); });
+  std::ranges::sort(changed);
+  changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
+  for_each(static_cast<std::uint32_t>(changed.size()), [&](std::uint32_t i) { find(changed[i]); });
+}
+
+void BlockFilter::find(std::uint32_t row) {
+  const TexelRecord& own = rows_[row];
+  Taps& taps = taps_[row];
+  taps.count = 0;
+  const auto add = [&](std::uint32_t of, float weight) {
+    taps.row[taps.count] = of;
+    taps.weight[taps.count++] = weight;
+  };
+  if (own.atlas == no_atlas_texel || reach_[row] <= 0) return add(row, 1);
+  glm::vec2 at[most_taps];
+  rows_.for_each_around(row, radius_, [&](std::uint32_t other, int dx, int dy) {
+    if (reach_[other] <= 0 || !rows_.same_face(row, other) ||
+        glm::distance(rows_[other].position, own.position) > reach_[row])
+      return;
+    at[taps.count] = glm::vec2(dx, dy);
+    // The block's rim counts half on either side, so that each set counts the same.
+    add(other, (std::abs(dx) == radius_ ? 0.5f : 1.0f) * (std::abs(dy) == radius_ ? 0.5f : 1.0f));
+  });
+  // The weights w (1 + g . (at - mean)) have their mean where the texel is.
+  float sum = 0;
+  glm::vec2 mean(0);
+  for (std::uint32_t i = 0; i < taps.count; ++i) sum += taps.weight[i], mean += taps.weight[i] * at[i];
+  mean /= sum;
+  float xx = 0, xy = 0, yy = 0;
+  for (std::uint32_t i = 0; i < taps.count; ++i) {
+    const glm::vec2 apart = at[i] - mean;
+    xx += taps.weight[i] * apart.x * apart.x;
+    xy += taps.weight[i] * apart.x * apart.y;
+    yy += taps.weight[i] * apart.y * apart.y;
+  }
+  xx /= sum, xy /= sum, yy /= sum;
+  const float determinant = xx * yy - xy * xy;
+  glm::vec2 gradient(0);
+  if (mean != glm::vec2(0) && determinant > least_spread * least_spread)
+    gradient = glm::vec2(xy * mean.y - yy * mean.x, xy * mean.x - xx * mean.y) / determinant;
+  for (std::uint32_t i = 0; i < taps.count; ++i) taps.weight[i] *= (1 + glm::dot(gradient, at[i] - mean)) / sum;
+}
+
+void BlockFilter::average(std::span<const glm::vec4> values, std::span<glm::vec4> averages) const {
+  if (taps_.empty()) {
+    std::ranges::copy(values, averages.begin());
+    return;
+  }
+  for_each(rows_.count(), [&](std::uint32_t row) {
+    const Taps& taps = taps_[row];
+    glm::vec4 sum(0);
+    for (std::uint32_t i = 0; i < taps.count; ++i) sum += taps.weight[i] * values[taps.row[i]];
+    averages[row] = sum;
+  });
+}
+
+}  // namespace lichtveld::lightfield

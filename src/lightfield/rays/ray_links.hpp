@@ -1,0 +1,83 @@
+// What each row sees along each of its rays. What stands still is found once and kept; each body keeps a list
+// of the rays that it covers, and a link is the nearest of all. A move redoes the lists of the body that moved,
+// and its own rays. Nothing accumulates: links are the same as if they had been found afresh.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "lichtveld/lightfield/light_field.hpp"
+#include "lichtveld/scene/ray_index.hpp"
+#include "rays/ray_sets.hpp"
+#include "rays/rows.hpp"
+
+namespace lichtveld::lightfield {
+
+class RayLinks {
+ public:
+  // All of these must outlive it.
+  RayLinks(const scene::RayIndex& index, const scene::Scene& scene, const Rows& rows, const RaySets& sets);
+
+  // Bodies are where `offsets` say; `moves`: since the last time.
+  void link(const scene::Offsets& offsets, const Moves& moves);
+
+  // Row by row, rays() each: the row that is seen, nothing() where none is, or outside() for rays that would
+  // leave below the row's own face and are none.
+  std::span<const std::uint32_t> of(std::uint32_t row) const {
+    return std::span(seen_).subspan(std::size_t{row} * rays(), rays());
+  }
+  // How far away that is [m]; infinite where nothing is.
+  std::span<const float> distances(std::uint32_t row) const {
+    return std::span(distance_).subspan(std::size_t{row} * rays(), rays());
+  }
+  // How many of the first and of the second half of the rays there are, without those that are none.
+  const std::array<std::uint32_t, 2>& valid(std::uint32_t row) const { return valid_[row]; }
+  std::uint32_t rays() const { return sets_.rays(); }
+  std::uint32_t nothing() const { return rows_.count(); }
+  std::uint32_t outside() const { return rows_.count() + 1; }
+
+  // The rows of which a link has changed with the last move, ascending.
+  const std::vector<std::uint32_t>& changed() const { return changed_; }
+  // Whether something lies on the row, by the middle of its texel: whoever sees it sees a part beside that.
+  bool buried(std::uint32_t row) const { return buried_[row] != 0; }
+  // Whether it lies there without a gap, so that nothing at all arrives.
+  bool covered(std::uint32_t row) const { return distances(row).front() == 0; }
+
+ private:
+  // A ray that meets a body before it meets what stands still.
+  struct Cover {
+    std::size_t ray;  // row * rays() + number
+    std::uint32_t seen;
+    float distance;  // [m]
+  };
+  using Covers = std::vector<Cover>;  // ray by ray
+
+  void find_own(std::uint32_t body);
+  void find_own(const Range& packet, std::uint32_t body);
+  std::uint32_t seen(const scene::HitPacket& hits, std::uint32_t lane) const;
+  bool contact(std::uint32_t row, std::uint32_t body) const;
+  Covers find_covers(std::uint32_t body, std::uint32_t receiver) const;
+  void find_covers(std::uint32_t body, const Range& packet, std::uint32_t receiver, Covers& covers) const;
+  void uncover(const Covers& covers);
+  void cover(const Covers& covers, bool anew);
+
+  const scene::RayIndex& index_;
+  const scene::Scene& scene_;
+  const Rows& rows_;
+  const RaySets& sets_;
+  scene::Offsets offsets_;
+  std::vector<std::uint32_t> own_, seen_;       // without bodies but the row's own, and with all
+  std::vector<float> own_distance_, distance_;  // [m]
+  std::vector<std::vector<Covers>> covers_;     // by body, then by the rows' body
+  // Rays that a body covered before this move and that have been set free; a bit for each of all, and which.
+  std::vector<bool> reset_;
+  std::vector<std::size_t> uncovered_;
+  std::vector<std::array<std::uint32_t, 2>> valid_;
+  std::vector<char> buried_;
+  std::vector<bool> touched_;  // rows of which a link has changed
+  std::vector<std::uint32_t> changed_;
+};
+
+}  // namespace lichtveld::lightfield

@@ -1,0 +1,121 @@
+#include "rays/rays.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "core/convergence.hpp"
+
+namespace lichtveld::lightfield {
+
+namespace {
+
+// Bounces without progress after which the bound is as low as it gets.
+constexpr std::uint32_t patience = 8;
+
+std::uint32_t side_of(std::uint32_t sets) {
+  return sets == 16 ? 4 : sets == 4 ? 2 : 1;
+}
+
+}  // namespace
+
+Rays::Rays(const gpu::Device& device, const scene::Scene& scene, const Settings& settings)
+    : LightField(scene.bodies.size()),
+      device_(device),
+      begun_(device.times().so_far()),
+      scene_(scene),
+      settings_(settings),
+      records_(device.times().time("texel_records", [&] { return TexelRecords(scene, settings.size); })),
+      index_(scene),
+      rows_(scene, records_, side_of(settings.rays.sets)),
+      sets_(settings.psf / 2, settings.rays.sets, settings.seed),
+      links_(index_, scene, rows_, sets_),
+      filter_(rows_, links_, side_of(settings.rays.sets)),
+      lamps_(index_, scene, rows_.all(), [this](std::uint32_t row) { return links_.covered(row); }),
+      gather_(rows_, links_, settings.direct),
+      irradiance_(std::size_t{settings.size} * settings.size, glm::vec4(0)) {}
+
+bool Rays::compute(Light before, const Moves& moves, const Enough& enough, Solution& solution) {
+  auto& times = device_.times();
+  if (before == Light::unknown || before == Light::moved) {
+    times.time("links", [&] { links_.link(offsets(), moves); });
+    if (settings_.direct == Direct::exact)
+      times.time("direct_light", [&] { lamps_.light(offsets(), moves, links_.changed()); });
+    times.time("block_filter", [&] { filter_.renew(links_.changed()); });
+    gather_.find_sources();
+    count_rays(solution);
+  }
+  const bool settled = times.time("bounces", [&] { return converge(before, enough, solution); });
+  times.time("average", [&] { finish(); });
+  return settled;
+}
+
+// As many bounces as are asked for; or until the bound is met, or falls no more, for rounding. True if that is
+// it.
+bool Rays::converge(Light before, const Enough& enough, Solution& solution) {
+  const bool exact = settings_.direct == Direct::exact;
+  if (before == Light::unknown || settings_.bounces) gather_.start();
+  gather_.set_lamps(lamps_.irradiance());
+  if (settings_.bounces) {
+    solution.bounces = exact ? 1 : 0;
+    while (solution.bounces < *settings_.bounces) bounce(solution);
+    return true;
+  }
+  double least = std::numeric_limits<double>::infinity();
+  for (std::uint32_t since = 0; since < patience;) {
+    bounce(solution);
+    if (solution.residual < converged || solution.bounces >= most_bounces) return true;
+    since = solution.residual < least ? 0 : since + 1;
+    least = std::min(least, solution.residual);
+    if (before != Light::unknown && since < patience && enough(solution.bounces)) return false;
+  }
+  return true;
+}
+
+void Rays::bounce(Solution& solution) {
+  const auto change = gather_.bounce();
+  ++solution.bounces;
+  solution.residual = bound_on_missing(change.most, records_.highest_albedo(), change.mean);
+}
+
+void Rays::count_rays(Solution& solution) const {
+  solution.texels_valid = records_.count();
+  solution.rays = std::uint64_t{rows_.count()} * sets_.rays();
+  solution.misses = 0;
+  for (std::uint32_t row = 0; row < rows_.count(); ++row) {
+    if (links_.covered(row)) continue;
+    const auto links = links_.of(row);
+    solution.misses += static_cast<std::uint64_t>(std::ranges::count(links, links_.nothing()));
+    solution.rays -= static_cast<std::uint64_t>(std::ranges::count(links, links_.outside()));
+  }
+}
+
+void Rays::finish() {
+  std::vector<glm::vec4> averages(rows_.count());
+  filter_.average(gather_.gathered(), averages);
+  for (std::uint32_t row = 0; row < rows_.count(); ++row) {
+    const auto& record = rows_[row];
+    if (record.atlas == no_atlas_texel) continue;
+    irradiance_[record.atlas] =
+        glm::vec4(glm::max(glm::vec3(averages[row]), 0.0f) + lamps_.irradiance()[row], 1);
+  }
+}
+
+double Rays::error_estimate() const {
+  std::vector<glm::vec4> averages(rows_.count()), half(irradiance_.size(), glm::vec4(0));
+  filter_.average(gather_.half_difference(), averages);
+  for (std::uint32_t row = 0; row < rows_.count(); ++row)
+    if (rows_[row].atlas != no_atlas_texel) half[rows_[row].atlas] = averages[row];
+  return split_half_error(irradiance_, half);
+}
+
+Shown Rays::shown() {
+  if (!presenter_) presenter_.emplace(device_, scene_, records_);
+  std::vector<float> covered(irradiance_.size(), 0);
+  for (std::uint32_t row = 0; row < rows_.count(); ++row)
+    if (rows_[row].atlas != no_atlas_texel && links_.buried(row)) covered[rows_[row].atlas] = 1;
+  return presenter_->show(irradiance_view(), covered);
+}
+
+}  // namespace lichtveld::lightfield

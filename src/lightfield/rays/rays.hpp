@@ -1,0 +1,52 @@
+// The engine `rays`: what each texel sees is found by rays, on the CPU, and kept. Light straight from lamps is
+// exact; what surfaces reflect is a sum over kept links, averaged over the sets of directions of neighbouring
+// texels.
+#pragma once
+
+#include "core/lamp_light.hpp"
+#include "lichtveld/lightfield/light_field.hpp"
+#include "lichtveld/lightfield/settings.hpp"
+#include "lichtveld/scene/ray_index.hpp"
+#include "passes/presenter.hpp"
+#include "rays/block_filter.hpp"
+#include "rays/ray_gather.hpp"
+#include "rays/ray_links.hpp"
+#include "rays/ray_sets.hpp"
+#include "rays/rows.hpp"
+
+namespace lichtveld::lightfield {
+
+class Rays final : public LightField {
+ public:
+  Rays(const gpu::Device& device, const scene::Scene& scene, const Settings& settings);
+
+  TexelView irradiance_view() const override { return {irradiance_, settings_.size}; }
+  Shown shown() override;
+  gpu::Times times() const override { return device_.times().so_far() - begun_; }
+
+ private:
+  bool compute(Light before, const Moves& moves, const Enough& enough, Solution& solution) override;
+  double error_estimate() const override;
+
+  bool converge(Light before, const Enough& enough, Solution& solution);
+  void bounce(Solution& solution);
+  void count_rays(Solution& solution) const;
+  void finish();
+
+  const gpu::Device& device_;
+  const gpu::Times begun_;  // Device::times() before it all
+  const scene::Scene& scene_;
+  const Settings settings_;
+  const TexelRecords records_;
+  const scene::RayIndex index_;
+  const Rows rows_;
+  const RaySets sets_;
+  RayLinks links_;
+  BlockFilter filter_;
+  LampLight lamps_;
+  RayGather gather_;
+  std::vector<glm::vec4> irradiance_;  // of the atlas
+  std::optional<Presenter> presenter_;
+};
+
+}  // namespace lichtveld::lightfield

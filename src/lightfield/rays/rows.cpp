@@ -1,0 +1,212 @@
+#include "rays/rows.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <tuple>
+
+namespace lichtveld::lightfield {
+
+namespace {
+
+// Atlas texels a side of a tile whose rows stand together: with sets in blocks of 4 x 4, 16 of a tile's texels
+// have the same.
+constexpr std::uint32_t tile = 16;
+constexpr std::uint32_t packet = 16;
+
+// Places are moved this far towards the middle of their triangle: rays that start on an edge shared with a wall
+// could, by rounding, start behind that wall [radii of the scene].
+constexpr float inset = 2e-6f;
+
+// A texel stands for what is seen of its surface, around the corner of a box too unless it looks another way.
+constexpr float alike_cosine = 0.7f;
+// Texels whose faces or normals are turned by more are on other sides of a crease.
+constexpr float crease_cosine = 0.95f;
+// A texel's plane ends this share of the way to its neighbour above or below it.
+constexpr float plane_share = 0.1f;
+constexpr int reach = 2;  // texels beyond its chart's rim that a point may lie
+
+// Which way it looks, roughly.
+std::uint32_t facing(const glm::vec3& face) {
+  const glm::vec3 size = glm::abs(face);
+  const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+  return static_cast<std::uint32_t>(2 * axis + (face[axis] < 0));
+}
+
+}  // namespace
+
+Rows::Rows(const scene::Scene& scene, const TexelRecords& records, std::uint32_t side)
+    : size_(records.size()), rows_(records.all()) {
+  const auto surfaces = surface_of_triangles(scene);
+  triangles_.resize(surfaces.size());
+  for (std::uint32_t triangle = 0; triangle < triangles_.size(); ++triangle) {
+    const auto corner = [&](std::size_t k) -> const scene::Vertex& {
+      return scene.vertices[scene.indices[std::size_t{3} * triangle + k]];
+    };
+    const scene::Vertex &a = corner(0), &b = corner(1), &c = corner(2);
+    const auto size = static_cast<float>(size_);
+    const glm::vec3 cross = glm::cross(b.position - a.position, c.position - a.position);
+    const float length = glm::length(cross);
+    const glm::vec3 face = length > 0 ? cross / length : glm::vec3(0);
+    const bool turned = glm::dot(face, a.normal + b.normal + c.normal) < 0;
+    triangles_[triangle] = {.origin = size * a.atlas,
+                            .u = size * (b.atlas - a.atlas),
+                            .v = size * (c.atlas - a.atlas),
+                            .face = turned ? -face : face,
+                            .turned = turned,
+                            .surface = surfaces[triangle],
+                            .fallback = no_row};
+  }
+  const float shift = inset * scene::bounding_sphere(scene).radius;
+  for (TexelRecord& row : rows_) {
+    glm::vec3 middle(0);
+    for (std::size_t k = 0; k < 3; ++k)
+      middle += scene.vertices[scene.indices[std::size_t{3} * row.triangle + k]].position / 3.0f;
+    const glm::vec3 way = middle - row.position;
+    row.position += way * (shift / std::max(glm::length(way), shift));
+  }
+  add_fallbacks(scene);
+  add_backs(scene);
+  sort(scene.bodies.size(), side);
+}
+
+// A place in the middle of each chart that no texel stands for; triangles whose middles lie in the same texel
+// share it.
+void Rows::add_fallbacks(const scene::Scene& scene) {
+  at_.assign(std::size_t{size_} * size_, no_row);
+  for (std::uint32_t row = 0; row < rows_.size(); ++row) at_[rows_[row].atlas] = row;
+  std::map<std::tuple<std::uint32_t, std::uint32_t, int, int>, std::uint32_t> found;
+  for (std::uint32_t index = 0; index < triangles_.size(); ++index) {
+    Triangle& triangle = triangles_[index];
+    const glm::vec2 middle(1.0f / 3);
+    if (triangle.face == glm::vec3(0) || find(triangle, middle) != no_row) continue;
+    const glm::ivec2 cell(glm::floor(triangle.origin + (triangle.u + triangle.v) / 3.0f));
+    const auto [place, is_new] =
+        found.try_emplace({triangle.surface, facing(triangle.face), cell.x, cell.y}, rows_.size());
+    if (is_new) {
+      auto record = record_at(scene, size_, {index, middle}, triangle.surface, no_atlas_texel);
+      const auto corner = [&](std::size_t k) {
+        return scene.vertices[scene.indices[std::size_t{3} * index + k]].position;
+      };
+      record.side = std::sqrt(glm::length(glm::cross(corner(1) - corner(0), corner(2) - corner(0))));
+      rows_.push_back(record);
+    }
+    triangle.fallback = place->second;
+  }
+}
+
+void Rows::add_backs(const scene::Scene& scene) {
+  const auto fronts = static_cast<std::uint32_t>(rows_.size());
+  back_.resize(fronts);
+  std::iota(back_.begin(), back_.end(), 0u);
+  for (std::uint32_t row = 0; row < fronts; ++row) {
+    if (!scene.materials[scene.surfaces[rows_[row].surface].material].double_sided) continue;
+    back_[row] = static_cast<std::uint32_t>(rows_.size());
+    TexelRecord back = rows_[row];
+    back.normal = -back.normal;
+    back.face = -back.face;
+    back.atlas = no_atlas_texel;
+    rows_.push_back(back);
+    back_.push_back(back_[row]);
+  }
+}
+
+// Until now rows stood in the order in which they were found.
+void Rows::sort(std::size_t bodies, std::uint32_t side) {
+  // What keeps packets apart comes first; the row, which follows all else, last.
+  using Key = std::array<std::uint32_t, 8>;
+  constexpr std::size_t kept_apart = 5;  // of them
+  const std::uint32_t tiles = (size_ + tile - 1) / tile;
+  std::vector<std::uint32_t> texel(rows_.size()), front(rows_.size());
+  std::iota(front.begin(), front.end(), 0u);
+  for (std::uint32_t row = 0; row < rows_.size(); ++row) {
+    if (back_[row] != row) front[back_[row]] = row;
+  }
+  std::vector<Key> keys;
+  for (std::uint32_t row = 0; row < rows_.size(); ++row) {
+    const TexelRecord& record = rows_[row];
+    // A back stands where its texel does.
+    const std::uint32_t atlas = record.atlas != no_atlas_texel ? record.atlas : rows_[front[row]].atlas;
+    const bool has_texel = atlas != no_atlas_texel;
+    const std::uint32_t x = has_texel ? atlas % size_ : 0, y = has_texel ? atlas / size_ : 0;
+    texel[row] = has_texel ? (y % side) * side + x % side : row % (side * side);
+    keys.push_back({record.body, has_texel ? y / tile * tiles + x / tile : tiles * tiles, record.surface,
+                    facing(record.face), record.atlas != no_atlas_texel ? 0u : 1u, texel[row], y * size_ + x,
+                    row});
+  }
+  std::ranges::sort(keys,
+                    [](const Key& a, const Key& b) { return std::ranges::lexicographical_compare(a, b); });
+
+  std::vector<std::uint32_t> moved_to(rows_.size());
+  std::vector<TexelRecord> sorted;
+  bodies_.assign(bodies, Range{0, 0});
+  packets_of_body_ = bodies_;
+  for (const Key& key : keys) {
+    const auto row = static_cast<std::uint32_t>(sorted.size());
+    const bool alike = row > 0 && std::equal(key.begin(), key.begin() + kept_apart, keys[row - 1].begin());
+    const std::uint32_t body = key[0];
+    if (row == 0 || body != keys[row - 1][0]) {
+      bodies_[body] = {row, row};
+      const auto next = static_cast<std::uint32_t>(packets_.size());
+      packets_of_body_[body] = {next, next};
+    }
+    if (!alike || packets_.back().size() == packet) packets_.push_back({row, row});
+    packets_.back().end = bodies_[body].end = row + 1;
+    packets_of_body_[body].end = static_cast<std::uint32_t>(packets_.size());
+    moved_to[key[7]] = row;
+    sorted.push_back(rows_[key[7]]);
+    sets_.push_back(texel[key[7]]);
+  }
+  std::vector<std::uint32_t> back(rows_.size());
+  for (std::uint32_t row = 0; row < rows_.size(); ++row) back[moved_to[row]] = moved_to[back_[row]];
+  back_ = std::move(back);
+  rows_ = std::move(sorted);
+  for (auto& row : at_)
+    if (row != no_row) row = moved_to[row];
+  for (auto& triangle : triangles_)
+    if (triangle.fallback != no_row) triangle.fallback = moved_to[triangle.fallback];
+}
+
+std::uint32_t Rows::find(const Triangle& triangle, const glm::vec2& barycentric) const {
+  const glm::vec2 place = triangle.origin + barycentric.x * triangle.u + barycentric.y * triangle.v;
+  const int size = static_cast<int>(size_);
+  const int x = std::clamp(static_cast<int>(std::floor(place.x)), 0, size - 1),
+            y = std::clamp(static_cast<int>(std::floor(place.y)), 0, size - 1);
+  const auto fits = [&](std::uint32_t row) {
+    return row != no_row && rows_[row].surface == triangle.surface &&
+           glm::dot(rows_[row].face, triangle.face) > alike_cosine;
+  };
+  const auto texel = [&](int i, int j) { return at_[static_cast<std::size_t>(j * size + i)]; };
+  if (const auto row = texel(x, y); fits(row)) return row;
+  std::uint32_t found = triangle.fallback;
+  float best = std::numeric_limits<float>::max();
+  for (int j = std::max(y - reach, 0); j <= std::min(y + reach, size - 1); ++j)
+    for (int i = std::max(x - reach, 0); i <= std::min(x + reach, size - 1); ++i) {
+      const glm::vec2 apart = glm::vec2(i, j) + 0.5f - place;
+      if (const float distance = glm::dot(apart, apart); distance < best && fits(texel(i, j))) {
+        best = distance;
+        found = texel(i, j);
+      }
+    }
+  return found;
+}
+
+bool Rows::same_face(std::uint32_t a, std::uint32_t b) const {
+  const TexelRecord &one = rows_[a], &other = rows_[b];
+  const glm::vec3 apart = other.position - one.position;
+  return one.body == other.body && one.surface == other.surface &&
+         glm::dot(one.face, other.face) >= crease_cosine &&
+         glm::dot(one.normal, other.normal) >= crease_cosine &&
+         std::abs(glm::dot(apart, one.face)) <= plane_share * std::max(glm::length(apart), one.side);
+}
+
+std::uint32_t Rows::seen(const scene::SurfacePoint& point, bool from_behind) const {
+  const Triangle& triangle = triangles_[point.triangle];
+  const auto row = find(triangle, point.barycentric);
+  // One-sided surfaces have no back: a NORMAL that looks the other way changes only where they receive.
+  return row != no_row && from_behind != triangle.turned ? back_[row] : row;
+}
+
+}  // namespace lichtveld::lightfield
