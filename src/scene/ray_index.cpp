@@ -85,8 +85,8 @@ struct RayIndex::Trees {
 
   RTCSceneTy* of_body(std::uint32_t body) const { return bodies[body].get(); }
 
-  // One thread builds the trees, so that coinciding triangles are met in the same order every time.
-  EmbreeDevice device{rtcNewDevice("threads=1")};
+  // Without a number of threads: Embree would hold all of the process to it.
+  EmbreeDevice device{rtcNewDevice(nullptr)};
   std::vector<float> positions;  // of Scene::vertices, about the centre, and what Embree reads past the last
   std::vector<std::array<Part, 2>>
       parts;  // of each body: one-sided, double-sided; they must stay where they are

@@ -14,7 +14,9 @@ constexpr float le = 10;  // [W m^-2 sr^-1]
 constexpr const char* few_directions =
     "a lamp is seen by the directions that hit it: one that is narrower than the gap between them lights some "
     "texels too much and others not at all, and one that is narrower than a PSF's pixel is missed by most of "
-    "its rays. More `--psf`; more `--size`, for the pixels.";
+    "its rays. More `--psf`; more `--size`, for the pixels. Rays see a lamp by 64 points, of which a slit "
+    "shows few or "
+    "none.";
 constexpr const char* cornell =
     "5 %, what the Cornell room has at these PSFs (docs/algorithm.md, Accuracy). The reference's noise is "
     "taken off.";
@@ -128,9 +130,9 @@ std::vector<Case> lamp_cases() {
       slit("slit_4_pixels", 4, {{{opening, 0.2}, {opening}, {0.01}, {0.01}}},
            {{{0.05, 0.3}, {0.05, 0.25}, {0.05}, {0.05}}}),
       slit("slit_1_pixel", 1, {{{opening, 0.7}, {opening}, {0.02}, {0.01}}},
-           {{{0.05, 1.2}, {0.05, 0.8}, {0.05}, {0.05}}}),
-      slit("slit_quarter_pixel", 0.25, {{{opening, 2.5}, {opening}, {0.04}, {0.02}}},
-           {{{0.05, 4}, {0.05, 2.5}, {0.05}, {0.05, 0.25}}}),
+           {{{0.05, 1.2}, {0.05, 0.8}, {0.05}, {0.05, 0.25}}}),
+      slit("slit_quarter_pixel", 0.25, {{{opening, 2.5}, {opening}, {0.04}, {0.02, 0.05}}},
+           {{{0.05, 4}, {0.05, 2.5}, {0.05}, {0.05, 1}}}),
   };
 }
 

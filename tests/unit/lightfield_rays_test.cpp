@@ -4,7 +4,7 @@
 
 #include <random>
 
-#include "core/lamp_light.hpp"
+#include "core/area_lamps.hpp"
 #include "device_for_tests.hpp"
 #include "form_factors.hpp"
 #include "known_scenes.hpp"
@@ -227,7 +227,7 @@ TEST_F(RaysMethod, DoubleSidedSheetsSendFromTheSideThatIsLit) {
   const auto map = texels_of(scene, {.size = 64, .psf = 96});
   const auto dark = where(map, [](const Texel& texel) { return texel.position.x > 0.1; });
   const auto bright = where(map, [](const Texel& texel) { return texel.position.x < -0.1; });
-  EXPECT_LT(mean(dark), 1e-3 * mean(bright)) << "but for texels that the sheet cuts through";
+  EXPECT_LT(mean(dark), 2e-3 * mean(bright)) << "but for texels that the sheet cuts through";
   std::vector<glm::vec4> irradiance = fresh(scene, {.size = 64, .psf = 96});
   EXPECT_LT(std::abs(reference::error_of(irradiance, truth.texels).bias), 0.005);
 }

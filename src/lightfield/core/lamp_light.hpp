@@ -6,30 +6,18 @@
 // that body's bits alone.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <functional>
 #include <span>
 #include <vector>
 
+#include "core/area_lamps.hpp"
 #include "core/texel_records.hpp"
 #include "lichtveld/lightfield/light_field.hpp"
 #include "lichtveld/scene/ray_index.hpp"
 #include "lichtveld/scene/scene.hpp"
 
 namespace lichtveld::lightfield {
-
-// Part of a lamp: a triangle, or a parallelogram, which starts at `corner` and is spanned by u and v.
-struct LampPatch {
-  glm::vec3 corner, u, v;  // [m], bodies at rest; the front is where u, v turn counter-clockwise
-  glm::vec3 emission;      // Le [W m^-2 sr^-1]
-  bool triangle, double_sided;
-};
-
-// E [W m^-2] that a patch brings to a place without anything in between; nothing arrives from below `normal` or
-// `face`.
-glm::vec3 irradiance_of(const LampPatch& patch, const glm::vec3& place, const glm::vec3& normal,
-                        const glm::vec3& face);
 
 class LampLight {
  public:
@@ -47,33 +35,24 @@ class LampLight {
   std::size_t lamps() const { return lamps_.size(); }
 
  private:
-  using Bits = std::array<std::uint64_t, 4>;
-  struct Samples {
-    std::uint32_t count = 0;                 // a multiple of 16
-    std::vector<float> x, y, z, nx, ny, nz;  // place and normal, bodies at rest; each stands for as much power
-    std::vector<char> double_sided;
-    scene::Box box;
-  };
+  using Bits = std::uint64_t;  // a sample each
+  static constexpr Bits all_samples = ~Bits{0};
   struct Hidden {
     std::uint32_t receiver;
     Bits bits;
   };
   struct Lamp {
-    std::uint32_t body = 0;
-    bool double_sided = false;
-    std::vector<LampPatch> patches;
-    Samples samples;
+    AreaLamp shape;
     std::vector<glm::vec3> unshadowed, arriving;  // E of each receiver [W m^-2]
     std::vector<Bits> own, seen;  // what the standing scene and the receiver's body leave; and all
     std::vector<std::vector<std::vector<Hidden>>> hidden;  // by body, then by the receivers' body
   };
 
-  void find_lamps();
   void light(Lamp& lamp, const Moves& moves, std::span<const std::uint32_t> recovered);
   void find_own(Lamp& lamp, std::uint32_t receiver) const;
   std::vector<Hidden> find_hidden(const Lamp& lamp, std::uint32_t body, std::uint32_t receivers) const;
   glm::vec3 arriving(const Lamp& lamp, std::uint32_t receiver) const;
-  Bits trace(const Lamp& lamp, std::uint32_t receiver, std::uint32_t body, const Bits& wanted) const;
+  Bits trace(const Lamp& lamp, std::uint32_t receiver, std::uint32_t body, Bits wanted) const;
 
   const scene::RayIndex& index_;
   const scene::Scene& scene_;

@@ -41,21 +41,25 @@ BlockFilter::BlockFilter(const Rows& rows, const RayLinks& links, std::uint32_t 
 
 void BlockFilter::renew(std::span<const std::uint32_t> rows) {
   if (taps_.empty()) return;
-  std::vector<std::uint32_t> changed(rows.begin(), rows.end());
-  std::vector<char> opened_or_closed(rows.size());
+  std::vector<char> wanted(rows_.count(), 0), opened_or_closed(rows.size());
   for_each(static_cast<std::uint32_t>(rows.size()), [&](std::uint32_t i) {
     const auto row = rows[i];
     const bool buried = links_.buried(row);
-    opened_or_closed[i] = buried != (reach_[row] <= 0);
+    const float before = reach_[row];
+    opened_or_closed[i] = buried != (before <= 0);
     reach_[row] = buried ? 0 : reach_share * harmonic_mean(links_.distances(row));
+    // As long as the whole block is near enough, it does not matter how near.
+    const float whole = 1.5f * static_cast<float>(radius_) * rows_[row].side;
+    wanted[row] = opened_or_closed[i] || std::min(before, reach_[row]) < whole;
   });
   // Nobody takes from what is buried.
-  for (std::uint32_t i = 0; i < rows.size(); ++i)
-    if (opened_or_closed[i])
-      rows_.for_each_around(rows[i], radius_, [&](std::uint32_t other, int, int) { changed.push_back(other); });
-  std::ranges::sort(changed);
-  changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
-  for_each(static_cast<std::uint32_t>(changed.size()), [&](std::uint32_t i) { find(changed[i]); });
+  if (rows.size() < rows_.count())
+    for (std::uint32_t i = 0; i < rows.size(); ++i)
+      if (opened_or_closed[i])
+        rows_.for_each_around(rows[i], radius_, [&](std::uint32_t other, int, int) { wanted[other] = 1; });
+  for_each(rows_.count(), [&](std::uint32_t row) {
+    if (wanted[row]) find(row);
+  });
 }
 
 void BlockFilter::find(std::uint32_t row) {

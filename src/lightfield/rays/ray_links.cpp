@@ -79,29 +79,33 @@ class Starts {
   std::array<std::span<const glm::vec3>, scene::RayPacket::size> directions_;
 };
 
-// Whether a ray from the origin meets a box: by its slabs (Kay and Kajiya 1986). What is not to be told is met.
-bool meets(const glm::vec3& direction, const glm::vec3& low, const glm::vec3& high) {
-  float first = 0, last = infinite;
-  for (int axis = 0; axis < 3; ++axis) {
-    const float inverse = 1 / direction[axis], a = low[axis] * inverse, b = high[axis] * inverse;
-    first = std::max(first, std::min(a, b));
-    last = std::min(last, std::max(a, b));
-  }
-  return !(first > last);
-}
+// For each direction whether a ray from the origin may meet a box: by its slabs (Kay and Kajiya 1986).
+class Slabs {
+ public:
+  explicit Slabs(std::uint32_t directions)
+      : x_(directions), y_(directions), z_(directions), misses_(directions) {}
 
-// The lanes whose rays may meet a box.
-std::uint32_t lanes_that_meet(const Starts& starts, const scene::RayPacket& rays, const scene::Box& box) {
-  if (starts.alike)
-    return meets({rays.dx[0], rays.dy[0], rays.dz[0]}, box.min - starts.high, box.max - starts.low) ? ~0u : 0u;
-  std::uint32_t found = 0;
-  for (std::uint32_t lane = 0; lane < starts.count; ++lane) {
-    const glm::vec3& place = starts.place[lane];
-    if (meets({rays.dx[lane], rays.dy[lane], rays.dz[lane]}, box.min - place, box.max - place))
-      found |= 1u << lane;
+  void set(std::uint32_t number, const glm::vec3& direction) {
+    x_[number] = 1 / direction.x, y_[number] = 1 / direction.y, z_[number] = 1 / direction.z;
   }
-  return found;
-}
+
+  // 1 for those that miss it.
+  const std::vector<std::uint32_t>& misses(const glm::vec3& low, const glm::vec3& high) {
+    for (std::size_t i = 0; i < x_.size(); ++i) {
+      const float ax = low.x * x_[i], bx = high.x * x_[i], ay = low.y * y_[i], by = high.y * y_[i],
+                  az = low.z * z_[i], bz = high.z * z_[i];
+      const float first =
+          std::max(std::max(std::min(ax, bx), std::min(ay, by)), std::max(std::min(az, bz), 0.0f));
+      const float last = std::min(std::min(std::max(ax, bx), std::max(ay, by)), std::max(az, bz));
+      misses_[i] = first > last;
+    }
+    return misses_;
+  }
+
+ private:
+  std::vector<float> x_, y_, z_;  // one over each direction
+  std::vector<std::uint32_t> misses_;
+};
 
 }  // namespace
 
@@ -118,12 +122,12 @@ RayLinks::RayLinks(const scene::RayIndex& index, const scene::Scene& scene, cons
       covers_(rows.bodies(), std::vector<Covers>(rows.bodies())),
       reset_(own_.size()),
       valid_(rows.count()),
-      buried_(rows.count()) {}
+      buried_(rows.count()),
+      misses_(rows.count()) {}
 
 void RayLinks::link(const scene::Offsets& offsets, const Moves& moves) {
   offsets_ = offsets;
-  std::vector<bool> touched(rows_.count());
-  touched_.swap(touched);
+  touched_.assign(rows_.count(), 0);
   const std::uint32_t bodies = rows_.bodies();
   for (std::uint32_t body = 1; body < bodies; ++body)
     for (std::uint32_t receiver = 0; receiver < bodies; ++receiver)
@@ -140,13 +144,15 @@ void RayLinks::link(const scene::Offsets& offsets, const Moves& moves) {
     }
   for (const std::size_t ray : uncovered_) reset_[ray] = false;
   uncovered_.clear();
-  changed_.clear();
-  for (std::uint32_t row = 0; row < rows_.count(); ++row) {
-    if (!touched_[row]) continue;
-    changed_.push_back(row);
+  for_each(0, rows_.count(), 256, [&](std::uint32_t row) {
+    if (!touched_[row]) return;
     const auto near = [&](float distance) { return distance <= buried_distance * rows_[row].side; };
     buried_[row] = 2 * std::ranges::count_if(distances(row), near) > std::ssize(distances(row));
-  }
+    misses_[row] = covered(row) ? 0 : static_cast<std::uint32_t>(std::ranges::count(of(row), nothing()));
+  });
+  changed_.clear();
+  for (std::uint32_t row = 0; row < rows_.count(); ++row)
+    if (touched_[row]) changed_.push_back(row);
 }
 
 // What stands still, and the row's own body, which moves with it.
@@ -159,7 +165,7 @@ void RayLinks::find_own(std::uint32_t body) {
              end = static_cast<std::ptrdiff_t>(std::size_t{rows.end} * rays());
   std::copy(own_.begin() + first, own_.begin() + end, seen_.begin() + first);
   std::copy(own_distance_.begin() + first, own_distance_.begin() + end, distance_.begin() + first);
-  std::fill(touched_.begin() + rows.first, touched_.begin() + rows.end, true);
+  std::fill(touched_.begin() + rows.first, touched_.begin() + rows.end, 1);
 }
 
 void RayLinks::find_own(const Range& packet, std::uint32_t body) {
@@ -234,12 +240,25 @@ void RayLinks::find_covers(std::uint32_t body, const Range& packet, std::uint32_
         for (std::uint32_t number = 0; number < rays(); ++number)
           covers.push_back({std::size_t{packet.first + lane} * rays() + number, nothing(), 0});
       }
+  // Lane by lane, or for all of one direction at once: whatever starts between the lowest and the highest
+  // place.
+  std::vector<std::uint32_t> lanes(rays(), 0);
+  Slabs slabs(rays());
+  for (std::uint32_t lane = 0; lane < (starts.alike ? 1 : starts.count); ++lane) {
+    for (std::uint32_t number = 0; number < rays(); ++number) slabs.set(number, starts.direction(lane, number));
+    const auto& misses = starts.alike
+                             ? slabs.misses(box.min - starts.high, box.max - starts.low)
+                             : slabs.misses(box.min - starts.place[lane], box.max - starts.place[lane]);
+    for (std::uint32_t number = 0; number < rays(); ++number)
+      if (!misses[number]) lanes[number] |= starts.alike ? ~0u : 1u << lane;
+  }
   scene::RayPacket along;
   scene::HitPacket hits;
   for (std::uint32_t number = 0; number < rays(); ++number) {
+    lanes[number] &= ~in_contact;
+    if (lanes[number] == 0) continue;
     starts.rays(number, along);
-    along.lanes &= lanes_that_meet(starts, along, box) & ~in_contact;
-    if (along.lanes == 0) continue;
+    along.lanes &= lanes[number];
     hits.clear(0);
     for (std::uint32_t lane = 0; lane < starts.count; ++lane)
       hits.distance[lane] = own_distance_[std::size_t{packet.first + lane} * rays() + number];
@@ -255,7 +274,7 @@ void RayLinks::uncover(const Covers& covers) {
   for (const Cover& cover : covers) {
     seen_[cover.ray] = own_[cover.ray];
     distance_[cover.ray] = own_distance_[cover.ray];
-    touched_[cover.ray / rays()] = true;
+    touched_[cover.ray / rays()] = 1;
     if (reset_[cover.ray]) continue;
     reset_[cover.ray] = true;
     uncovered_.push_back(cover.ray);
@@ -271,7 +290,7 @@ void RayLinks::cover(const Covers& covers, bool anew) {
     if (std::pair(distance, seen) >= std::pair(distance_[ray], seen_[ray])) continue;
     seen_[ray] = seen;
     distance_[ray] = distance;
-    touched_[ray / rays()] = true;
+    touched_[ray / rays()] = 1;
   }
 }
 

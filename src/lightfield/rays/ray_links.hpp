@@ -34,6 +34,8 @@ class RayLinks {
   }
   // How many of the first and of the second half of the rays there are, without those that are none.
   const std::array<std::uint32_t, 2>& valid(std::uint32_t row) const { return valid_[row]; }
+  // Of these, those that meet nothing.
+  std::uint32_t misses(std::uint32_t row) const { return misses_[row]; }
   std::uint32_t rays() const { return sets_.rays(); }
   std::uint32_t nothing() const { return rows_.count(); }
   std::uint32_t outside() const { return rows_.count() + 1; }
@@ -76,7 +78,8 @@ class RayLinks {
   std::vector<std::size_t> uncovered_;
   std::vector<std::array<std::uint32_t, 2>> valid_;
   std::vector<char> buried_;
-  std::vector<bool> touched_;  // rows of which a link has changed
+  std::vector<std::uint32_t> misses_;
+  std::vector<char> touched_;  // rows of which a link has changed
   std::vector<std::uint32_t> changed_;
 };
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 #include "core/convergence.hpp"
 
@@ -27,12 +26,12 @@ Rays::Rays(const gpu::Device& device, const scene::Scene& scene, const Settings&
       scene_(scene),
       settings_(settings),
       records_(device.times().time("texel_records", [&] { return TexelRecords(scene, settings.size); })),
-      index_(scene),
-      rows_(scene, records_, side_of(settings.rays.sets)),
+      index_(device.times().time("ray_index", [&] { return std::make_unique<scene::RayIndex>(scene); })),
+      rows_(device.times().time("rows", [&] { return Rows(scene, records_, side_of(settings.rays.sets)); })),
       sets_(settings.psf / 2, settings.rays.sets, settings.seed),
-      links_(index_, scene, rows_, sets_),
+      links_(*index_, scene, rows_, sets_),
       filter_(rows_, links_, side_of(settings.rays.sets)),
-      lamps_(index_, scene, rows_.all(), [this](std::uint32_t row) { return links_.covered(row); }),
+      lamps_(*index_, scene, rows_.all(), [this](std::uint32_t row) { return links_.covered(row); }),
       gather_(rows_, links_, settings.direct),
       irradiance_(std::size_t{settings.size} * settings.size, glm::vec4(0)) {}
 
@@ -81,13 +80,10 @@ void Rays::bounce(Solution& solution) {
 
 void Rays::count_rays(Solution& solution) const {
   solution.texels_valid = records_.count();
-  solution.rays = std::uint64_t{rows_.count()} * sets_.rays();
-  solution.misses = 0;
+  solution.rays = solution.misses = 0;
   for (std::uint32_t row = 0; row < rows_.count(); ++row) {
-    if (links_.covered(row)) continue;
-    const auto links = links_.of(row);
-    solution.misses += static_cast<std::uint64_t>(std::ranges::count(links, links_.nothing()));
-    solution.rays -= static_cast<std::uint64_t>(std::ranges::count(links, links_.outside()));
+    solution.rays += links_.valid(row)[0] + links_.valid(row)[1];
+    solution.misses += links_.misses(row);
   }
 }
 

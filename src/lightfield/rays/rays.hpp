@@ -38,7 +38,7 @@ class Rays final : public LightField {
   const scene::Scene& scene_;
   const Settings settings_;
   const TexelRecords records_;
-  const scene::RayIndex index_;
+  const std::unique_ptr<const scene::RayIndex> index_;
   const Rows rows_;
   const RaySets sets_;
   RayLinks links_;

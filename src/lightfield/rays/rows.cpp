@@ -35,6 +35,11 @@ std::uint32_t facing(const glm::vec3& face) {
   return static_cast<std::uint32_t>(2 * axis + (face[axis] < 0));
 }
 
+// Places of the same key are on one surface and look roughly the same way.
+std::uint32_t face_key(std::uint32_t surface, const glm::vec3& face) {
+  return surface * 6 + facing(face);
+}
+
 }  // namespace
 
 Rows::Rows(const scene::Scene& scene, const TexelRecords& records, std::uint32_t side)
@@ -57,6 +62,7 @@ Rows::Rows(const scene::Scene& scene, const TexelRecords& records, std::uint32_t
                             .face = turned ? -face : face,
                             .turned = turned,
                             .surface = surfaces[triangle],
+                            .face_key = face_key(surfaces[triangle], turned ? -face : face),
                             .fallback = no_row};
   }
   const float shift = inset * scene::bounding_sphere(scene).radius;
@@ -75,8 +81,9 @@ Rows::Rows(const scene::Scene& scene, const TexelRecords& records, std::uint32_t
 // A place in the middle of each chart that no texel stands for; triangles whose middles lie in the same texel
 // share it.
 void Rows::add_fallbacks(const scene::Scene& scene) {
-  at_.assign(std::size_t{size_} * size_, no_row);
-  for (std::uint32_t row = 0; row < rows_.size(); ++row) at_[rows_[row].atlas] = row;
+  at_.assign(std::size_t{size_} * size_, Cell{});
+  for (std::uint32_t row = 0; row < rows_.size(); ++row)
+    at_[rows_[row].atlas] = {row, face_key(rows_[row].surface, rows_[row].face)};
   std::map<std::tuple<std::uint32_t, std::uint32_t, int, int>, std::uint32_t> found;
   for (std::uint32_t index = 0; index < triangles_.size(); ++index) {
     Triangle& triangle = triangles_[index];
@@ -163,8 +170,8 @@ void Rows::sort(std::size_t bodies, std::uint32_t side) {
   for (std::uint32_t row = 0; row < rows_.size(); ++row) back[moved_to[row]] = moved_to[back_[row]];
   back_ = std::move(back);
   rows_ = std::move(sorted);
-  for (auto& row : at_)
-    if (row != no_row) row = moved_to[row];
+  for (auto& cell : at_)
+    if (cell.row != no_row) cell.row = moved_to[cell.row];
   for (auto& triangle : triangles_)
     if (triangle.fallback != no_row) triangle.fallback = moved_to[triangle.fallback];
 }
@@ -178,8 +185,9 @@ std::uint32_t Rows::find(const Triangle& triangle, const glm::vec2& barycentric)
     return row != no_row && rows_[row].surface == triangle.surface &&
            glm::dot(rows_[row].face, triangle.face) > alike_cosine;
   };
-  const auto texel = [&](int i, int j) { return at_[static_cast<std::size_t>(j * size + i)]; };
-  if (const auto row = texel(x, y); fits(row)) return row;
+  const auto& here = at_[static_cast<std::size_t>(y * size + x)];
+  if (here.row != no_row && (here.face_key == triangle.face_key || fits(here.row))) return here.row;
+  const auto texel = [&](int i, int j) { return at_[static_cast<std::size_t>(j * size + i)].row; };
   std::uint32_t found = triangle.fallback;
   float best = std::numeric_limits<float>::max();
   for (int j = std::max(y - reach, 0); j <= std::min(y + reach, size - 1); ++j)

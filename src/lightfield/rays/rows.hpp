@@ -34,7 +34,7 @@ class Rows {
   Range packets_of_body(std::uint32_t body) const { return packets_of_body_[body]; }
 
   // The row of an atlas texel; no_row for what is none.
-  std::uint32_t at(std::uint32_t atlas) const { return at_[atlas]; }
+  std::uint32_t at(std::uint32_t atlas) const { return at_[atlas].row; }
   std::uint32_t size() const { return size_; }  // of the atlas
 
   // each(row, dx, dy) for the texels at most `reach` beside one, itself too, where they are from there
@@ -47,7 +47,7 @@ class Rows {
               y = static_cast<int>(atlas) / size;
     for (int j = std::max(y - reach, 0); j <= std::min(y + reach, size - 1); ++j)
       for (int i = std::max(x - reach, 0); i <= std::min(x + reach, size - 1); ++i)
-        if (const auto other = at_[static_cast<std::size_t>(j * size + i)]; other != no_row)
+        if (const auto other = at_[static_cast<std::size_t>(j * size + i)].row; other != no_row)
           each(other, i - x, j - y);
   }
 
@@ -62,7 +62,11 @@ class Rows {
     glm::vec2 origin, u, v;  // atlas coordinates [texels]
     glm::vec3 face;          // unit, as its NORMALs point
     bool turned;             // against the order of its corners
-    std::uint32_t surface, fallback;
+    std::uint32_t surface, face_key, fallback;
+  };
+  // What most look-ups need to know of an atlas texel.
+  struct Cell {
+    std::uint32_t row = no_row, face_key = 0;
   };
 
   std::uint32_t find(const Triangle& triangle, const glm::vec2& barycentric) const;
@@ -72,7 +76,8 @@ class Rows {
 
   std::uint32_t size_;
   std::vector<TexelRecord> rows_;
-  std::vector<std::uint32_t> at_, back_;  // of each row: that of its back, or itself
+  std::vector<Cell> at_;
+  std::vector<std::uint32_t> back_;  // of each row: that of its back, or itself
   std::vector<std::uint32_t> sets_;
   std::vector<Range> bodies_, packets_, packets_of_body_;
   std::vector<Triangle> triangles_;
