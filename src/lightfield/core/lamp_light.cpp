@@ -16,8 +16,9 @@ namespace {
 constexpr std::uint32_t packet = scene::RayPacket::size;
 // More are taken together by where they lie: each costs a word and a closed form a receiver.
 constexpr std::size_t most_lamps = 64;
-// A lamp of more patches is the sum over its samples, in closed form it would take too long.
-constexpr std::size_t most_patches = 16;
+// Where all lamps together have more patches, those of more than a few are the sum over their samples: in
+// closed form it would take too long.
+constexpr std::size_t most_patches = 1024, few_patches = 16;
 constexpr std::uint32_t receivers_of_a_task = 256;
 // A ray ends this share of its way before its sample, which lies on a surface.
 constexpr float short_of_sample = 1 - 1e-4f;
@@ -51,9 +52,13 @@ LampLight::LampLight(const scene::RayIndex& index, const scene::Scene& scene,
       of_body_(scene.bodies.size()),
       irradiance_(receivers.size(), glm::vec3(0)) {
   for (std::uint32_t i = 0; i < receivers.size(); ++i) of_body_[receivers[i].body].push_back(i);
-  for (auto& shape : find_area_lamps(scene, most_lamps)) {
+  auto shapes = find_area_lamps(scene, most_lamps);
+  std::size_t patches = 0;
+  for (const auto& shape : shapes) patches += shape.patches.size();
+  for (auto& shape : shapes) {
     Lamp& lamp = lamps_.emplace_back();
     lamp.shape = std::move(shape);
+    lamp.sampled = patches > most_patches && lamp.shape.patches.size() > few_patches;
     lamp.unshadowed.assign(receivers.size(), glm::vec3(0));
     lamp.arriving = lamp.unshadowed;
     lamp.own.assign(receivers.size(), 0);
@@ -118,7 +123,7 @@ void LampLight::find_own(Lamp& lamp, std::uint32_t receiver) const {
   const auto& record = receivers_[receiver];
   const glm::vec3 place = record.position + offsets_[record.body] - offsets_[lamp.shape.body];
   lamp.unshadowed[receiver] = glm::vec3(0);
-  if (lamp.shape.patches.size() > most_patches) {
+  if (lamp.sampled) {
     for (std::uint32_t i = 0; i < samples_of_lamp; ++i)
       lamp.unshadowed[receiver] +=
           lamp.shape.samples.intensity[i] * weight_of(lamp.shape.samples, i, -place, record);

@@ -43,6 +43,7 @@ class LampLight {
   };
   struct Lamp {
     AreaLamp shape;
+    bool sampled = false;  // E without anything in between too, instead of in closed form
     std::vector<glm::vec3> unshadowed, arriving;  // E of each receiver [W m^-2]
     std::vector<Bits> own, seen;  // what the standing scene and the receiver's body leave; and all
     std::vector<std::vector<std::vector<Hidden>>> hidden;  // by body, then by the receivers' body
