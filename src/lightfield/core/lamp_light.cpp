@@ -1,13 +1,12 @@
 #include "core/lamp_light.hpp"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
 #include <utility>
+
+#include "core/parallel.hpp"
 
 namespace lichtveld::lightfield {
 
@@ -22,14 +21,6 @@ constexpr std::size_t most_patches = 1024, few_patches = 16;
 constexpr std::uint32_t receivers_of_a_task = 256;
 // A ray ends this share of its way before its sample, which lies on a surface.
 constexpr float short_of_sample = 1 - 1e-4f;
-
-template <typename Each>
-void for_each(std::uint32_t count, const Each& each) {
-  tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, count, receivers_of_a_task),
-                    [&](const tbb::blocked_range<std::uint32_t>& some) {
-                      for (std::uint32_t i = some.begin(); i < some.end(); ++i) each(i);
-                    });
-}
 
 // What a sample of intensity 1 would bring to a receiver, which `to` shifts it from; nothing from below [m^-2].
 float weight_of(const LampSamples& samples, std::uint32_t i, const glm::vec3& to, const TexelRecord& receiver) {
@@ -95,7 +86,7 @@ void LampLight::light(Lamp& lamp, const Moves& moves, std::span<const std::uint3
   for (std::uint32_t body = 0; body < bodies; ++body) {
     if (!moved(body)) continue;
     const auto& receivers = of_body_[body];
-    for_each(static_cast<std::uint32_t>(receivers.size()), [&](std::uint32_t i) {
+    for_each_index(0, static_cast<std::uint32_t>(receivers.size()), receivers_of_a_task, [&](std::uint32_t i) {
       find_own(lamp, receivers[i]);
       touched[receivers[i]] = 2;
     });
@@ -112,9 +103,10 @@ void LampLight::light(Lamp& lamp, const Moves& moves, std::span<const std::uint3
         touched[receiver] = std::max<char>(touched[receiver], 1);
       }
     }
-  for_each(static_cast<std::uint32_t>(receivers_.size()), [&](std::uint32_t receiver) {
-    if (touched[receiver]) lamp.arriving[receiver] = arriving(lamp, receiver);
-  });
+  for_each_index(0, static_cast<std::uint32_t>(receivers_.size()), receivers_of_a_task,
+                 [&](std::uint32_t receiver) {
+                   if (touched[receiver]) lamp.arriving[receiver] = arriving(lamp, receiver);
+                 });
   for (std::uint32_t i = 0; i < receivers_.size(); ++i)
     if (touched[i]) touched_[i] = true;
 }
@@ -196,8 +188,8 @@ std::vector<LampLight::Hidden> LampLight::find_hidden(const Lamp& lamp, std::uin
   };
   const auto count = static_cast<std::uint32_t>(receivers.size());
   std::vector<std::vector<Hidden>> of_task((count + receivers_of_a_task - 1) / receivers_of_a_task);
-  tbb::parallel_for(std::size_t{0}, of_task.size(), [&](std::size_t task) {
-    const auto first = static_cast<std::uint32_t>(task) * receivers_of_a_task;
+  for_each_index(0, static_cast<std::uint32_t>(of_task.size()), 1, [&](std::uint32_t task) {
+    const auto first = task * receivers_of_a_task;
     for (auto i = first; i < std::min(first + receivers_of_a_task, count); ++i)
       look(receivers[i], of_task[task]);
   });

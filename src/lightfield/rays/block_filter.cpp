@@ -1,10 +1,9 @@
 #include "rays/block_filter.hpp"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
+
+#include "core/parallel.hpp"
 
 namespace lichtveld::lightfield {
 
@@ -15,14 +14,6 @@ constexpr std::uint32_t rows_of_a_task = 256;
 constexpr float reach_share = 0.5f;
 // A plane is fitted to the texels around if they are spread at least so well both ways, in squares of a texel.
 constexpr float least_spread = 0.2f;
-
-template <typename Each>
-void for_each(std::uint32_t count, const Each& each) {
-  tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, count, rows_of_a_task),
-                    [&](const tbb::blocked_range<std::uint32_t>& some) {
-                      for (std::uint32_t i = some.begin(); i < some.end(); ++i) each(i);
-                    });
-}
 
 float harmonic_mean(std::span<const float> distances) {
   float sum = 0;
@@ -42,7 +33,7 @@ BlockFilter::BlockFilter(const Rows& rows, const RayLinks& links, std::uint32_t 
 void BlockFilter::renew(std::span<const std::uint32_t> rows) {
   if (taps_.empty()) return;
   std::vector<char> wanted(rows_.count(), 0), opened_or_closed(rows.size());
-  for_each(static_cast<std::uint32_t>(rows.size()), [&](std::uint32_t i) {
+  for_each_index(0, static_cast<std::uint32_t>(rows.size()), rows_of_a_task, [&](std::uint32_t i) {
     const auto row = rows[i];
     const bool buried = links_.buried(row);
     const float before = reach_[row];
@@ -57,7 +48,7 @@ void BlockFilter::renew(std::span<const std::uint32_t> rows) {
     for (std::uint32_t i = 0; i < rows.size(); ++i)
       if (opened_or_closed[i])
         rows_.for_each_around(rows[i], radius_, [&](std::uint32_t other, int, int) { wanted[other] = 1; });
-  for_each(rows_.count(), [&](std::uint32_t row) {
+  for_each_index(0, rows_.count(), rows_of_a_task, [&](std::uint32_t row) {
     if (wanted[row]) find(row);
   });
 }
@@ -105,7 +96,7 @@ void BlockFilter::average(std::span<const glm::vec4> values, std::span<glm::vec4
     std::ranges::copy(values, averages.begin());
     return;
   }
-  for_each(rows_.count(), [&](std::uint32_t row) {
+  for_each_index(0, rows_.count(), rows_of_a_task, [&](std::uint32_t row) {
     const Taps& taps = taps_[row];
     glm::vec4 sum(0);
     for (std::uint32_t i = 0; i < taps.count; ++i) sum += taps.weight[i] * values[taps.row[i]];

@@ -1,11 +1,10 @@
 #include "rays/ray_gather.hpp"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <limits>
 #include <numbers>
+
+#include "core/parallel.hpp"
 
 namespace lichtveld::lightfield {
 
@@ -70,18 +69,22 @@ void RayGather::start() {
   send();
 }
 
-void RayGather::set_lamps(std::span<const glm::vec3> irradiance) {
+RayGather::Change RayGather::set_lamps(std::span<const glm::vec3> irradiance) {
   std::ranges::copy(irradiance, lamps_.begin());
   send();
+  Change change;
+  for (const auto& light : lamps_) {
+    change.most = std::max(change.most, double{std::max({light.r, light.g, light.b})});
+    change.mean += (double{light.r} + light.g + light.b) / (3.0 * rows_.count());
+  }
+  return change;
 }
 
 // L = albedo / pi * E; with Direct::psf what glows sends its light along the rays, too.
 void RayGather::send() {
-  tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, rows_.count(), rows_of_a_task), [&](const auto& some) {
-    for (std::uint32_t row = some.begin(); row < some.end(); ++row) {
-      own_radiance_[row] = sent(row, row);
-      radiance_[row] = source_[row] == row ? own_radiance_[row] : sent(row, source_[row]);
-    }
+  for_each_index(0, rows_.count(), rows_of_a_task, [&](std::uint32_t row) {
+    own_radiance_[row] = sent(row, row);
+    radiance_[row] = source_[row] == row ? own_radiance_[row] : sent(row, source_[row]);
   });
 }
 
@@ -97,7 +100,7 @@ RayGather::Change RayGather::bounce() {
   std::vector<Change> changes(tasks);
   const auto* of_open = reinterpret_cast<const Float4*>(radiance_.data());
   const auto* of_buried = reinterpret_cast<const Float4*>(own_radiance_.data());
-  tbb::parallel_for(std::uint32_t{0}, tasks, [&](std::uint32_t task) {
+  for_each_index(0, tasks, 1, [&](std::uint32_t task) {
     auto& [most, sum] = changes[task];
     const auto first = task * rows_of_a_task, end = std::min(first + rows_of_a_task, rows_.count());
     for (auto row = first; row < end; ++row) {

@@ -23,13 +23,12 @@ class RayGather {
 
   // No light has been reflected yet.
   void start();
-  // What rows send changes with the light that comes straight from lamps: E of each row [W m^-2], none with
-  // Direct::psf.
-  void set_lamps(std::span<const glm::vec3> irradiance);
-
   struct Change {
     double most = 0, mean = 0;  // of E's channels: by how much any has changed; of all texels [W m^-2]
   };
+  // What rows send changes with the light that comes straight from lamps: E of each row [W m^-2], none with
+  // Direct::psf. Where nothing has been reflected yet, that is what has changed.
+  Change set_lamps(std::span<const glm::vec3> irradiance);
   Change bounce();
 
   // Of each row, what has been gathered [W m^-2], and by how much the first half of the rays says more than

@@ -1,12 +1,11 @@
 #include "rays/ray_links.hpp"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 #include <limits>
 #include <utility>
+
+#include "core/parallel.hpp"
 
 namespace lichtveld::lightfield {
 
@@ -16,15 +15,6 @@ constexpr float infinite = std::numeric_limits<float>::infinity();
 constexpr std::uint32_t packets_of_a_task = 16;
 // What most rays meet nearer than this lies on the texel [its sides].
 constexpr float buried_distance = 0.25f;
-
-// Some numbers at a time, on all cores.
-template <typename Each>
-void for_each(std::uint32_t first, std::uint32_t end, std::uint32_t grain, const Each& each) {
-  tbb::parallel_for(tbb::blocked_range<std::uint32_t>(first, end, grain),
-                    [&](const tbb::blocked_range<std::uint32_t>& some) {
-                      for (std::uint32_t i = some.begin(); i < some.end(); ++i) each(i);
-                    });
-}
 
 // A packet's places and the directions that each looks along.
 class Starts {
@@ -144,7 +134,7 @@ void RayLinks::link(const scene::Offsets& offsets, const Moves& moves) {
     }
   for (const std::size_t ray : uncovered_) reset_[ray] = false;
   uncovered_.clear();
-  for_each(0, rows_.count(), 256, [&](std::uint32_t row) {
+  for_each_index(0, rows_.count(), 256, [&](std::uint32_t row) {
     if (!touched_[row]) return;
     const auto near = [&](float distance) { return distance <= buried_distance * rows_[row].side; };
     buried_[row] = 2 * std::ranges::count_if(distances(row), near) > std::ssize(distances(row));
@@ -158,8 +148,8 @@ void RayLinks::link(const scene::Offsets& offsets, const Moves& moves) {
 // What stands still, and the row's own body, which moves with it.
 void RayLinks::find_own(std::uint32_t body) {
   const auto packets = rows_.packets_of_body(body);
-  for_each(packets.first, packets.end, packets_of_a_task,
-           [&](std::uint32_t packet) { find_own(rows_.packets()[packet], body); });
+  for_each_index(packets.first, packets.end, packets_of_a_task,
+                 [&](std::uint32_t packet) { find_own(rows_.packets()[packet], body); });
   const auto rows = rows_.of_body(body);
   const auto first = static_cast<std::ptrdiff_t>(std::size_t{rows.first} * rays()),
              end = static_cast<std::ptrdiff_t>(std::size_t{rows.end} * rays());
@@ -183,7 +173,7 @@ void RayLinks::find_own(const Range& packet, std::uint32_t body) {
       const bool is_one = along.lanes >> lane & 1;
       own_[ray] = is_one ? seen(hits, lane) : outside();
       valid[lane][number < (rays() + 1) / 2 ? 0 : 1] += is_one;
-      own_distance_[ray] = own_[ray] < rows_.count() ? hits.distance[lane] : infinite;
+      own_distance_[ray] = hits.distance[lane];
     }
   }
   for (std::uint32_t lane = 0; lane < starts.count; ++lane) {
@@ -214,7 +204,7 @@ RayLinks::Covers RayLinks::find_covers(std::uint32_t body, std::uint32_t receive
   const auto packets = rows_.packets_of_body(receiver);
   const std::uint32_t tasks = (packets.size() + packets_of_a_task - 1) / packets_of_a_task;
   std::vector<Covers> of_task(tasks);
-  for_each(0, tasks, 1, [&](std::uint32_t task) {
+  for_each_index(0, tasks, 1, [&](std::uint32_t task) {
     const std::uint32_t first = packets.first + task * packets_of_a_task;
     for (auto packet = first; packet < std::min(first + packets_of_a_task, packets.end); ++packet)
       find_covers(body, rows_.packets()[packet], receiver, of_task[task]);

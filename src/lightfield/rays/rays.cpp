@@ -55,9 +55,10 @@ bool Rays::compute(Light before, const Moves& moves, const Enough& enough, Solut
 bool Rays::converge(Light before, const Enough& enough, Solution& solution) {
   const bool exact = settings_.direct == Direct::exact;
   if (before == Light::unknown || settings_.bounces) gather_.start();
-  gather_.set_lamps(lamps_.irradiance());
+  const auto direct = gather_.set_lamps(lamps_.irradiance());
   if (settings_.bounces) {
     solution.bounces = exact ? 1 : 0;
+    solution.residual = bound_on_missing(direct.most, records_.highest_albedo(), direct.mean);
     while (solution.bounces < *settings_.bounces) bounce(solution);
     return true;
   }
