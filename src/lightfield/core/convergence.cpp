@@ -19,6 +19,21 @@ double bound_on_missing(double change, float albedo_max, double mean) {
   return change / (1 - albedo_max) / mean;
 }
 
+bool bounce_until_converged(const Solution& solution, const std::function<void()>& bounce,
+                            const LightField::Enough& enough) {
+  // Bounces without progress after which the bound is as low as it gets.
+  constexpr std::uint32_t patience = 8;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::uint32_t since = 0; since < patience;) {
+    bounce();
+    if (solution.residual < converged || solution.bounces >= most_bounces) return true;
+    since = solution.residual < least ? 0 : since + 1;
+    least = std::min(least, solution.residual);
+    if (since < patience && enough(solution.bounces)) return false;
+  }
+  return true;
+}
+
 Convergence::Convergence(const TexelRecords& records)
     : before_(std::size_t{records.size()} * records.size(), glm::vec4(0)),
       albedo_max_(records.highest_albedo()) {}

@@ -2,6 +2,7 @@
 // off.
 #pragma once
 
+#include <functional>
 #include <glm/glm.hpp>
 #include <span>
 #include <vector>
@@ -23,6 +24,11 @@ void warn_of_no_bound(const Solution& solution);
 // sum to one. After a bounce that changed E by at most `change`, what all later bounces still add is below
 // change / (1 - max albedo): that bound as a share of E's mean, infinite if an albedo is 1.
 double bound_on_missing(double change, float albedo_max, double mean);
+
+// Bounces until that bound (Solution::residual) is met, or falls no more, for rounding: true. `bounce` does one
+// more and writes the solution's bounces and residual; after each that has not got there, `enough` may end it.
+bool bounce_until_converged(const Solution& solution, const std::function<void()>& bounce,
+                            const LightField::Enough& enough);
 
 // That bound from whole light maps, of texels with a > 0, all channels.
 class Convergence {

@@ -32,7 +32,6 @@ class LampLight {
 
   // E [W m^-2] of each receiver.
   const std::vector<glm::vec3>& irradiance() const { return irradiance_; }
-  std::size_t lamps() const { return lamps_.size(); }
 
  private:
   using Bits = std::uint64_t;  // a sample each

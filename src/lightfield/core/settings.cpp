@@ -51,9 +51,6 @@ std::string name_of(Sort sort) {
 std::string name_of(Weights weights) {
   return word_of(words_of_weights(), weights);
 }
-std::string name_of(Direct direct) {
-  return word_of(words_of_directs(), direct);
-}
 
 std::uint32_t PsfSize::pixels(std::uint32_t size) const {
   if (times && value == 1) return 0;  // the settings' word for it

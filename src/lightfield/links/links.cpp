@@ -9,13 +9,6 @@
 
 namespace lichtveld::lightfield {
 
-namespace {
-
-// Bounces without progress after which the bound is as low as it gets.
-constexpr std::uint32_t patience = 8;
-
-}  // namespace
-
 Links::Links(const gpu::Device& device, const scene::Scene& scene, const Settings& settings)
     : LightField(scene.bodies.size()),
       device_((check_on(device, settings), device)),
@@ -82,15 +75,8 @@ bool Links::converge(Light before, const Enough& enough, Solution& solution) {
     if (enough(solution.bounces)) return false;
   }
   links_.sum_direct();
-  double least = std::numeric_limits<double>::infinity();
-  for (std::uint32_t since = 0; since < patience;) {
-    bounce(solution);
-    if (solution.residual < converged || solution.bounces >= most_bounces) return true;
-    since = solution.residual < least ? 0 : since + 1;
-    least = std::min(least, solution.residual);
-    if (since < patience && enough(solution.bounces)) return false;
-  }
-  return true;
+  return bounce_until_converged(
+      solution, [&] { bounce(solution); }, enough);
 }
 
 void Links::present() {

@@ -10,9 +10,6 @@ namespace lichtveld::lightfield {
 
 namespace {
 
-// Bounces without progress after which the bound is as low as it gets.
-constexpr std::uint32_t patience = 8;
-
 std::uint32_t side_of(std::uint32_t sets) {
   return sets == 16 ? 4 : sets == 4 ? 2 : 1;
 }
@@ -62,15 +59,10 @@ bool Rays::converge(Light before, const Enough& enough, Solution& solution) {
     while (solution.bounces < *settings_.bounces) bounce(solution);
     return true;
   }
-  double least = std::numeric_limits<double>::infinity();
-  for (std::uint32_t since = 0; since < patience;) {
-    bounce(solution);
-    if (solution.residual < converged || solution.bounces >= most_bounces) return true;
-    since = solution.residual < least ? 0 : since + 1;
-    least = std::min(least, solution.residual);
-    if (before != Light::unknown && since < patience && enough(solution.bounces)) return false;
-  }
-  return true;
+  // The first map is never one of a room that is half lit.
+  const auto may_end = [&](std::uint32_t bounces) { return before != Light::unknown && enough(bounces); };
+  return bounce_until_converged(
+      solution, [&] { bounce(solution); }, may_end);
 }
 
 void Rays::bounce(Solution& solution) {

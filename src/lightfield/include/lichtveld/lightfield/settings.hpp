@@ -23,7 +23,6 @@ const std::map<std::string, Direct>& words_of_directs();
 std::string name_of(ABuffer abuffer);
 std::string name_of(Sort sort);
 std::string name_of(Weights weights);
-std::string name_of(Direct direct);
 
 // What the A-buffer can hold: the stencil counts a pixel's layers in 8 bits.
 constexpr std::uint32_t most_layers = 128;
