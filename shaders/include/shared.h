@@ -167,9 +167,13 @@ struct ReceiveConstants {
   uint texels;
 };
 
+struct BrdfConstants {
+  float emitted;  // 1; 0: without Le
+};
+
 struct BounceConstants {
   uint texels;
-  uint lamps;          // texels from the first on whose light the direct sums hold
+  uint lamps;          // texels from the first on whose Le is left out: direct light has it
   float direct_scale;  // what w Le is multiplied by in direct sums
   uint counted;        // 1: what has changed is asked for
 };

@@ -16,6 +16,7 @@ layout(binding = 5, rgba32f) uniform image2D total_irradiance;           // rgb:
 layout(binding = 6, rgba32f) uniform writeonly image2D half_difference;  // rgb: (E of half 0 - E of half 1) / 2
 layout(binding = 7) writeonly buffer Radiance { vec4 radiance[]; };      // as gather.glsl's
 layout(binding = 8) writeonly buffer Changed { vec2 changed[]; };        // of a texel: the largest, and the sum of E
+layout(binding = 9) readonly buffer Lamps { vec4 lamps[]; };             // rgb: exact E straight from lamps, or 0
 layout(push_constant) uniform Push { BounceConstants constants; };
 
 // From half of the directions, lamps left out. rgb: sum of w L; a: of w.
@@ -44,7 +45,7 @@ void main() {
   const vec3 before = imageLoad(total_irradiance, texel).rgb;
   const vec4 first = received(me, 0u), second = received(me, 1u);
   const vec4 first_lamps = from_lamps(me, 0u, first.a), second_lamps = from_lamps(me, 1u, second.a);
-  const vec3 e = irradiance_with_lamps(first + second, first_lamps + second_lamps), change = abs(e - before);
+  const vec3 e = lamps[me].rgb + irradiance_with_lamps(first + second, first_lamps + second_lamps), change = abs(e - before);
   imageStore(total_irradiance, texel, vec4(e, 1.0));
   const vec3 apart = irradiance_with_lamps(first, first_lamps) - irradiance_with_lamps(second, second_lamps);
   imageStore(half_difference, texel, vec4(apart / 2.0, 0.0));

@@ -10,6 +10,7 @@ layout(binding = 1, rgba32f) uniform readonly image2D albedo;
 layout(binding = 2, rgba32f) uniform readonly image2D emission;
 layout(binding = 3, rgba32f) uniform readonly image2D total_irradiance;
 layout(binding = 4, rgba32f) uniform writeonly image2D radiance;  // rgb: L [W m^-2 sr^-1]; a: 1 on charts and gutters
+layout(push_constant) uniform Push { BrdfConstants constants; };
 
 void main() {
   const ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
@@ -19,7 +20,7 @@ void main() {
   vec4 result = vec4(0.0);
   if (from != NO_TEXEL) {
     const ivec2 at = ivec2(from % uint(size.x), from / uint(size.x));
-    result = vec4(radiance_of(imageLoad(emission, at).rgb, imageLoad(albedo, at).rgb, imageLoad(total_irradiance, at).rgb), 1.0);
+    result = vec4(radiance_of(constants.emitted * imageLoad(emission, at).rgb, imageLoad(albedo, at).rgb, imageLoad(total_irradiance, at).rgb), 1.0);
   }
   imageStore(radiance, texel, result);
 }

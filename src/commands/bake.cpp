@@ -67,8 +67,8 @@ void bake(const BakeOptions& options) {
   for (const auto& text : options.moves) job.moves.push_back(parse_move(text, job.scene));
 
   const Baked baked =
-      options.method == reference_method ? bake_reference(options, job) : bake_light_field(options, job);
-  files::write_exr(options.out, baked.irradiance, options.settings.size);
+      options.method.is_reference() ? bake_reference(options, job) : bake_light_field(options, job);
+  files::write_exr(options.out, baked.irradiance, baked.size);
   if (baked.shown) files::write_bytes(options.png, stream::encode_png(baked.shown->bytes, baked.shown->size));
   if (!options.report.empty()) files::write_text(options.report, baked.report.dump(2) + "\n");
   spdlog::info("{}: {} texels, {} bounces, {:.0f} ms on {}", options.out, baked.report["texels_valid"].dump(),
@@ -106,26 +106,25 @@ void add_bake(CLI::App& application) {
   command->add_option("--dump-psf", options->dump_psf, "The direction whose A-buffer and irradiance are dumped")
       ->capture_default_str();
   add_quality_options(*command, options->settings);
+  command
+      ->add_option_function<std::string>(
+          "--error", [options](const std::string& text) { options->error = parse_share(text); },
+          "Choose --size and --psf, as far as they are not given, so that E is expected to be no farther off, "
+          "as the "
+          "root mean square over the mean; by trials of a few seconds")
+      ->type_name("2%|0.02");
   add_bounces_option(*command, options->settings);
   add_method_option(*command, options->method, true);
   add_light_field_options(*command, options->settings);
+  command->get_option("--psf")->default_str("as many as serve the method best: 96 of rays, 384 of others");
   command->add_option("--spp", options->spp, "Paths a texel of --method reference, 1..1000000")
       ->capture_default_str();
   add_device_options(*command, options->device);
   add_capture_options(*command, options->capture, "as many as leave the last");
   command->callback([options, command] {
-    choose_method(*command, options->method);
-    // What the other method would take is a mistake, not something to pass over in silence.
-    const std::vector<std::string> of_others =
-        options->method == reference_method
-            ? std::vector<std::string>{"--psf",    "--psf-size", "--weights", "--abuffer",  "--sort",
-                                       "--layers", "--live",     "--dump",    "--dump-psf", "--capture"}
-        : options->method == "links"
-            ? std::vector<std::string>{"--spp", "--abuffer", "--sort", "--dump", "--dump-psf"}
-            : std::vector<std::string>{"--spp"};
-    for (const auto& name : of_others)
-      if (command->count(name) > 0)
-        throw UsageError(name + " means nothing to --method " + options->method + "; leave it out");
+    choose_engines(*command, options->method);
+    if (command->count("--size") > 0) options->fixed.size = options->settings.size;
+    if (command->count("--psf") > 0) options->fixed.psf = options->settings.psf;
     if (options->capture.after && !options->live)
       throw UsageError(
           "--capture-after counts the updates of --live, and without it there is one; leave it out");

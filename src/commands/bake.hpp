@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "lichtveld/lightfield/choice.hpp"
 #include "lichtveld/lightfield/shown.hpp"
 #include "options.hpp"
 
@@ -16,11 +17,13 @@ struct BakeOptions {
   std::uint32_t dump_psf = 0;
   std::vector<std::string> moves;
   bool live = false;
-  std::string method = "links";
+  Method method;
   gpu::DeviceOptions device;
   CaptureOptions capture;
   lightfield::Settings settings;
-  std::uint32_t spp = 256;  // of the reference
+  std::optional<double> error;  // rel_rmse to expect; by a size and directions that are to be chosen,
+  lightfield::Forecast::Fixed fixed = {};  // but for these
+  std::uint32_t spp = 256;                 // of the reference
 };
 
 // A scene and where its movable nodes are to go, in order.
@@ -37,6 +40,7 @@ struct BakeJob {
 };
 
 struct Baked {
+  std::uint32_t size;  // texels a side
   std::vector<glm::vec4> irradiance;
   std::optional<lightfield::Shown> shown;  // if options.png asks for it
   nlohmann::ordered_json report;

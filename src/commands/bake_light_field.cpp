@@ -1,3 +1,5 @@
+#include <spdlog/spdlog.h>
+
 #include <chrono>
 
 #include "bake.hpp"
@@ -11,9 +13,9 @@ namespace {
 
 // What moves may have made of what is kept, by a look at all of it; misses are counted anew with it. Null for
 // engines that keep nothing.
-nlohmann::ordered_json look_again(lightfield::LightField& light, const BakeOptions& options,
+nlohmann::ordered_json look_again(lightfield::LightField& light, const lightfield::Settings& settings,
                                   lightfield::Solution& solution) {
-  const auto check = light.check_links(options.settings.psf);
+  const auto check = light.check_links(settings.psf);
   if (check.links == 0) return {};
   solution.misses = check.misses;
   solution.rays_unknown = check.rays_unknown;
@@ -49,6 +51,20 @@ lightfield::LightField::StageObserver dump_into(const std::filesystem::path& fol
   };
 }
 
+// The quickest light map that is exact enough; says what to expect of it.
+void choose_quality(const BakeOptions& options, const lightfield::Engine& engine, const gpu::Device& device,
+                    const scene::Scene& scene, lightfield::Settings& settings) {
+  const lightfield::Forecast forecast(engine, device, scene, settings, options.fixed, [] { return false; });
+  const auto expected = forecast.quickest_for(*options.error);
+  settings.size = expected.quality.size;
+  settings.psf = expected.quality.psf;
+  spdlog::info("--size {} --psf {}: {:.1f} % off, in {:.1f} s", settings.size, settings.psf,
+               100 * expected.error, expected.first_ms / 1000);
+  if (expected.error > *options.error)
+    spdlog::warn("nothing finer is to be chosen from, and {:.1f} % was asked for; try --method reference",
+                 100 * *options.error);
+}
+
 }  // namespace
 
 Baked bake_light_field(const BakeOptions& options, const BakeJob& job) {
@@ -56,9 +72,10 @@ Baked bake_light_field(const BakeOptions& options, const BakeJob& job) {
   const gpu::Device device(options.device);
   const auto start = std::chrono::steady_clock::now();
   auto total = std::make_unique<gpu::TimeLedger::Stage>(device.times(), "rest");
-  const auto light = device.times().time("set_up", [&] {
-    return lightfield::make_light_field(options.method, device, job.scene, options.settings);
-  });
+  auto settings = options.settings;
+  const auto& engine = engine_of(options.method, device, job.scene, settings);
+  if (options.error) choose_quality(options, engine, device, job.scene, settings);
+  const auto light = device.times().time("set_up", [&] { return engine.make(device, job.scene, settings); });
   if (options.live) live(*light, job, capture);
   if (!options.dump.empty()) light->observe(dump_into(options.dump), options.dump_psf);
   light->place(job.moved());
@@ -66,14 +83,14 @@ Baked bake_light_field(const BakeOptions& options, const BakeJob& job) {
   const auto settle = [&] { solution = light->settle(); };
   // What --live has computed is only looked at once more.
   options.live ? settle() : update(capture, settle);
-  Baked baked{.irradiance = light->irradiance(), .shown = {}, .report = {}};
+  Baked baked{.size = settings.size, .irradiance = light->irradiance(), .shown = {}, .report = {}};
   const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
   total.reset();
 
   const auto times = light->times();
   if (!options.png.empty()) baked.shown = light->shown();
-  const auto links = options.live ? look_again(*light, options, solution) : nlohmann::ordered_json();
-  baked.report = report(device, options.method, options.settings, solution, times, took.count());
+  const auto links = options.live ? look_again(*light, settings, solution) : nlohmann::ordered_json();
+  baked.report = report(device, engine.name, settings, solution, times, took.count());
   if (!links.empty()) baked.report["links"] = links;
   check_validation(device);
   return baked;

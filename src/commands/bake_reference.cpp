@@ -20,7 +20,7 @@ Baked bake_reference(const BakeOptions& options, const BakeJob& job) {
   });
   const std::chrono::duration<double, std::milli> total = std::chrono::steady_clock::now() - start;
 
-  Baked baked{.irradiance = traced.texels, .shown = {}, .report = {}};
+  Baked baked{.size = settings.size, .irradiance = traced.texels, .shown = {}, .report = {}};
   if (!options.png.empty()) {
     const gpu::Device device(options.device);
     baked.shown = lightfield::present(device, job.scene, {traced.texels, options.settings.size});

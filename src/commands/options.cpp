@@ -1,12 +1,14 @@
 #include "options.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
 
 #include "lichtveld/files/output.hpp"
+#include "lichtveld/lightfield/choice.hpp"
 #include "lichtveld/lightfield/directions.hpp"
-#include "lichtveld/lightfield/engine.hpp"
 
 namespace lichtveld::commands {
 
@@ -30,6 +32,29 @@ void add_choice(CLI::App& command, const std::string& option, Value& value,
       ->type_name(choices)
       ->default_str(std::ranges::find(names, value, [](const auto& entry) { return entry.second; })->first);
 }
+
+// What means something to some methods alone.
+struct OptionOfMethods {
+  const char* option;
+  std::vector<std::string> methods;
+};
+const std::vector<OptionOfMethods> options_of_methods = {
+    {"--abuffer", {"thesis"}},
+    {"--sort", {"thesis"}},
+    {"--dump", {"thesis"}},
+    {"--dump-psf", {"thesis"}},
+    {"--layers", {"thesis", "links"}},
+    {"--psf-size", {"thesis", "links"}},
+    {"--weights", {"thesis", "links"}},
+    {"--capture", {"thesis", "links"}},
+    {"--step-bounces", {"links"}},
+    {"--sets", {"rays"}},
+    {"--direct", {"thesis", "links", "rays"}},
+    {"--psf", {"thesis", "links", "rays"}},
+    {"--error", {"thesis", "links", "rays"}},
+    {"--live", {"thesis", "links", "rays"}},
+    {"--spp", {reference_method}},
+};
 
 }  // namespace
 
@@ -79,41 +104,74 @@ void update(std::optional<gpu::Capture>& capture, const std::function<void()>& w
   capture ? capture->around(work) : work();
 }
 
-void add_method_option(CLI::App& command, std::string& method, bool with_reference) {
+void add_method_option(CLI::App& command, Method& method, bool with_reference) {
   std::map<std::string, std::string> names;
   std::string help;
   const auto add = [&](const std::string& name, const std::string& summary) {
     names[name] = name;
     help += (help.empty() ? "" : "; ") + name + ": " + summary;
   };
+  add(method.name, "rays on a CPU, on a GPU what a short trial finds better");
   for (const auto& engine : lightfield::engines()) add(engine.name, engine.summary);
   if (with_reference) add(reference_method, "path tracing on the CPU, the truth to compare with");
-  add_choice(command, "--method", method, names, help);
+  add_choice(command, "--method", method.name, names, help);
 }
 
-void choose_method(const CLI::App& command, std::string& method) {
-  if (command.count("--method") > 0) return;
-  for (const char* name : {"--abuffer", "--sort", "--dump", "--dump-psf"})
-    if (const auto* option = command.get_option_no_throw(name); option != nullptr && option->count() > 0)
-      method = "thesis";
+void choose_engines(const CLI::App& command, Method& method) {
+  std::vector<std::string> left;
+  for (const auto& engine : lightfield::engines())
+    if (method.name == Method{}.name || method.name == engine.name) left.emplace_back(engine.name);
+  if (method.is_reference()) left = {reference_method};
+  for (const auto& [option, methods] : options_of_methods) {
+    const auto* used = command.get_option_no_throw(option);
+    if (used == nullptr || used->count() == 0) continue;
+    const auto lacks = [&, known = std::span(methods)](const std::string& name) {
+      return std::ranges::find(known, name) == known.end();
+    };
+    std::erase_if(left, lacks);
+    if (!left.empty()) continue;
+    throw UsageError(std::string(option) + " means nothing to --method " + method.name + " here, but to " +
+                     fmt::format("{}", fmt::join(methods, ", ")) + "; leave it out");
+  }
+  method.own_psf = command.count("--psf") == 0;
+  for (const auto& engine : lightfield::engines())
+    if (std::ranges::find(left, engine.name) != left.end()) method.engines.push_back(&engine);
+}
+
+const lightfield::Engine& engine_of(const Method& method, const gpu::Device& device, const scene::Scene& scene,
+                                    lightfield::Settings& settings) {
+  const auto& engine = lightfield::suited(method.engines, device, scene, settings);
+  if (method.own_psf) settings.psf = engine.psf;
+  return engine;
 }
 
 void add_light_field_options(CLI::App& command, lightfield::Settings& settings) {
   add_choice(command, "--abuffer", settings.thesis.abuffer, lightfield::words_of_abuffers(),
-             "Of --method thesis, and asks for it: how a PSF keeps all its layers: routed by the stencil to "
+             "Of --method thesis: how a PSF keeps all its layers: routed by the stencil to "
              "the samples of a pixel, or in a list of "
              "each pixel");
   add_choice(command, "--sort", settings.thesis.sort, lightfield::words_of_sorts(),
-             "Of --method thesis, and asks for it: how a texel finds its layer: sorting them, or scanning for "
+             "Of --method thesis: how a texel finds its layer: sorting them, or scanning for "
              "the nearest in front");
   command
       .add_option("--sets", settings.rays.sets,
-                  "Of --method rays: sets of directions that neighbouring texels share out: 16, 4, or 1: all look along the "
+                  "Of --method rays: sets of directions that neighbouring texels share out: 16, 4, or 1: all "
+                  "look along the "
                   "same ones")
       ->capture_default_str();
-  add_choice(command, "--direct", settings.direct, lightfield::words_of_directs(),
-             "Of --method rays: light straight from lamps in closed form, with exact shadows, or by the directions as all "
-             "other light");
+  command
+      .add_option_function<std::string>(
+          "--direct",
+          [&settings](const std::string& text) {
+            const auto& words = lightfield::words_of_directs();
+            if (!words.contains(text)) throw UsageError("--direct " + text + ": choose one of exact|psf");
+            settings.direct = words.at(text);
+          },
+          "Light straight from lamps: exact, in closed form with shadows by sample points; psf: by the "
+          "directions, "
+          "as all other light")
+      ->type_name("exact|psf")
+      ->default_str("exact; psf of --method thesis");
   command
       .add_option(
           "--layers", settings.layers,
@@ -153,6 +211,15 @@ lightfield::PsfSize parse_psf_size(const std::string& text) {
     throw UsageError("--psf-size " + text +
                      ": a number of pixels a side, 16..8192, or as in 2x of times the size");
   return size;
+}
+
+double parse_share(const std::string& text) {
+  const bool percent = text.ends_with('%');
+  double value = 0;
+  if (!CLI::detail::lexical_cast(percent ? text.substr(0, text.size() - 1) : text, value) ||
+      !(value > 0 && std::isfinite(value)))
+    throw UsageError("--error " + text + ": a share above 0, as 2% or 0.02");
+  return percent ? value / 100 : value;
 }
 
 std::optional<std::uint32_t> parse_bounces(const std::string& text) {

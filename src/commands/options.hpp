@@ -10,6 +10,7 @@
 
 #include "lichtveld/gpu/capture.hpp"
 #include "lichtveld/gpu/device.hpp"
+#include "lichtveld/lightfield/engine.hpp"
 #include "lichtveld/lightfield/settings.hpp"
 #include "lichtveld/scene/scene.hpp"
 
@@ -46,11 +47,25 @@ void update(std::optional<gpu::Capture>& capture, const std::function<void()>& w
 // What computes the light: an engine of the light field, or path tracing.
 inline constexpr const char* reference_method = "reference";
 
-// --method: an engine, or where it is said so the reference.
-void add_method_option(CLI::App& command, std::string& method, bool with_reference);
+struct Method {
+  std::string name = "auto";
+  // Of these, once the command line is read, one computes the light; none for the reference.
+  std::vector<const lightfield::Engine*> engines = {};
+  bool own_psf = true;  // as many directions as the engine takes by itself
 
-// Without --method, options that only the thesis' method has ask for it. After the command line is read.
-void choose_method(const CLI::App& command, std::string& method);
+  bool is_reference() const { return name == reference_method; }
+};
+
+// --method: an engine, auto, or where it is said so the reference.
+void add_method_option(CLI::App& command, Method& method, bool with_reference);
+
+// After the command line is read: which engines are left, as some options mean something to some methods alone.
+// Throws UsageError for one that means nothing to the method.
+void choose_engines(const CLI::App& command, Method& method);
+
+// The engine that suits the device, and without --psf its number of directions.
+const lightfield::Engine& engine_of(const Method& method, const gpu::Device& device, const scene::Scene& scene,
+                                    lightfield::Settings& settings);
 
 // --abuffer, --sort, --layers: how a light field is computed, whatever its quality.
 void add_light_field_options(CLI::App& command, lightfield::Settings& settings);
@@ -60,6 +75,9 @@ void add_quality_options(CLI::App& command, lightfield::Settings& settings);
 
 // "512", "2x" or "0.5x". Throws UsageError for anything else.
 lightfield::PsfSize parse_psf_size(const std::string& text);
+
+// "2%" or "0.02", above 0. Throws UsageError for anything else.
+double parse_share(const std::string& text);
 
 // "auto" (nothing) or a number from 1. Throws UsageError for anything else.
 std::optional<std::uint32_t> parse_bounces(const std::string& text);

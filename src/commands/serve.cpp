@@ -8,8 +8,7 @@
 
 #include "command_list.hpp"
 #include "lichtveld/files/hash.hpp"
-#include "lichtveld/lightfield/engine.hpp"
-#include "lichtveld/room/quality.hpp"
+#include "lichtveld/lightfield/choice.hpp"
 #include "lichtveld/room/room.hpp"
 #include "lichtveld/scene/atlas.hpp"
 #include "lichtveld/stream/encoder.hpp"
@@ -23,9 +22,11 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// What a light map after a step may take: half of what 15 a second allow, because browsers may share the
-// machine.
-constexpr auto budget_a_map = 33ms;
+// Light maps a second that a map after a step leaves room for, where nobody asks for another rate; each may
+// take half of its share, because browsers may share the machine.
+constexpr double usual_rate = 15;
+// Light that is off by more shows as blotches.
+constexpr double visible_error = 0.1;
 constexpr std::size_t cubes_of_players = 2;  // as stream's protocol has it
 
 struct ServeOptions {
@@ -33,8 +34,9 @@ struct ServeOptions {
   stream::ServerOptions stream;  // what the command line says of it
   std::string udp_port;          // PORT or FIRST-LAST; empty: any
   double rate = 30;
-  std::string method = "links";
-  bool chosen_quality = false;
+  Method method;
+  bool rate_is_asked_for = false;
+  std::optional<lightfield::Forecast::Fixed> to_choose;  // what is fixed, if anything is to be chosen
   gpu::DeviceOptions device;
   CaptureOptions capture;
   lightfield::Settings settings{
@@ -130,6 +132,23 @@ void update_room(std::optional<gpu::Capture>& capture, const std::function<void(
   }
 }
 
+// The finest light maps that this machine renews often enough; says what to expect of them.
+void choose_quality(ServeOptions& options, const lightfield::Engine& engine, const gpu::Device& device,
+                    const scene::Scene& scene, const std::function<bool()>& stopped) {
+  const double rate = options.rate_is_asked_for ? options.rate : usual_rate;
+  lightfield::Forecast forecast(engine, device, scene, options.settings, *options.to_choose, stopped);
+  const auto expected =
+      forecast.finest_within(std::chrono::milliseconds(std::max(std::lround(500 / rate), 1L)));
+  options.settings.size = expected.quality.size;
+  options.settings.psf = expected.quality.psf;
+  spdlog::info("--size {} --psf {}: a map in {:.0f} ms after a move, {:.1f} % off", expected.quality.size,
+               expected.quality.psf, expected.step_ms, 100 * expected.error);
+  if (expected.error > visible_error)
+    spdlog::warn(
+        "light maps {:.0f} % off show blotches: a lower --rate, a larger lamp or a faster machine would help",
+        100 * expected.error);
+}
+
 void serve(ServeOptions options) {
   if (!(options.rate > 0 && options.rate <= 1000))
     throw UsageError("--rate: maps a second, above 0 and up to 1000");
@@ -142,12 +161,10 @@ void serve(ServeOptions options) {
   const auto scene = scene::load(options.scene);
   options.stream.token = read_token(options.token_file);
   options.stream.scene_hash = files::sha256_of_file(options.scene);
-  const auto& engine = lightfield::engine(options.method);
   auto capture = make_capture(options.capture, 0);
   const gpu::Device device(options.device);
-  if (!options.chosen_quality)
-    options.settings = room::finest_within(budget_a_map, engine, device, scene, options.settings,
-                                           [&] { return stop.stop_requested(); });
+  const auto& engine = engine_of(options.method, device, scene, options.settings);
+  if (options.to_choose) choose_quality(options, engine, device, scene, [&] { return stop.stop_requested(); });
   scene::check_atlas(scene, options.settings.size);
 
   const auto rest = room::places_at_rest(scene, cubes_of_players);
@@ -170,8 +187,8 @@ void serve(ServeOptions options) {
   options.stream.work = [&] { return as_sent(room.work()); };
   server = std::make_unique<stream::Server>(std::move(options.stream));
   room.begin();
-  spdlog::info("serving {}: --size {} --psf {} on {}", options.scene, options.settings.size,
-               options.settings.psf, device.summary().name);
+  spdlog::info("serving {}: --method {} --size {} --psf {} on {}", options.scene, engine.name,
+               options.settings.size, options.settings.psf, device.summary().name);
   room.run();
   if (const auto why = server->refused(); !why.empty()) throw UsageError(why);
   const auto totals = server->statistics();
@@ -209,7 +226,8 @@ void add_serve(CLI::App& application) {
       "The address at which this machine is reached from outside, where a 1:1 NAT stands before it");
   command->add_option("--rate", options->rate, "Most light maps a second")->capture_default_str();
   add_quality_options(*command, options->settings);
-  command->get_option("--size")->default_str("the finest that this machine renews 15 times a second");
+  command->get_option("--size")->default_str(
+      "the finest that this machine renews at --rate, or 15 times a second");
   command->get_option("--psf")->default_str("likewise");
   add_bounces_option(*command, options->settings);
   add_method_option(*command, options->method, false);
@@ -218,15 +236,17 @@ void add_serve(CLI::App& application) {
   add_device_options(*command, options->device);
   add_capture_options(*command, options->capture, "0");
   command->callback([options, command] {
-    choose_method(*command, options->method);
-    if (command->count("--step-bounces") > 0 && (options->method != "links" || options->settings.bounces))
-      throw UsageError(
-          "--step-bounces is for --method links with --bounces auto, whose light goes on where it was; leave "
-          "it out");
-    if (options->method == "links" && (command->count("--abuffer") > 0 || command->count("--sort") > 0))
-      throw UsageError("--abuffer and --sort mean nothing to --method links; leave them out");
-    options->chosen_quality =
-        command->count("--size") + command->count("--psf") + command->count("--psf-size") > 0;
+    choose_engines(*command, options->method);
+    if (command->count("--step-bounces") > 0 && options->settings.bounces)
+      throw UsageError("--step-bounces is for --bounces auto, whose light goes on where it was; leave it out");
+    options->rate_is_asked_for = command->count("--rate") > 0;
+    const auto fixed = [&](const char* option, std::uint32_t value) {
+      return command->count(option) > 0 ? std::optional(value) : std::nullopt;
+    };
+    options->to_choose = {.size = fixed("--size", options->settings.size),
+                          .psf = fixed("--psf", options->settings.psf)};
+    if (command->count("--psf-size") > 0 || (options->to_choose->size && options->to_choose->psf))
+      options->to_choose.reset();
     serve(*options);
   });
 }

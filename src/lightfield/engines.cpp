@@ -19,9 +19,9 @@ std::unique_ptr<LightField> make(const gpu::Device& device, const scene::Scene& 
 }
 
 constexpr std::array all = {
-    Engine{"thesis", "every PSF rendered afresh in every bounce", make<Thesis>},
-    Engine{"links", "what each texel sees is kept, a move redoes only what it touched", make<Links>},
-    Engine{"rays", "the same found by rays, wholly on the CPU, with exact light from lamps", make<Rays>},
+    Engine{"thesis", "every PSF rendered afresh in every bounce", 384, make<Thesis>},
+    Engine{"links", "what each texel sees is kept, a move redoes only what it touched", 384, make<Links>},
+    Engine{"rays", "the same found by rays, wholly on the CPU, with exact light from lamps", 96, make<Rays>},
 };
 
 }  // namespace

@@ -93,7 +93,7 @@ class Room::Pipeline {
         return light_->shown();
       });
     });
-    log_.set_passes(light_->times().passes);
+    log_.set_times(light_->times());
     sender_.send({std::move(shown), places_});
   }
 
@@ -103,7 +103,7 @@ class Room::Pipeline {
     if (found.links == 0) return;
     log_.count("links_checked", found.links);
     log_.count("links_differing", found.differing);
-    log_.set_passes(light_->times().passes);
+    log_.set_times(light_->times());
     if (found.differing > 0 && !std::exchange(warned_, true))
       spdlog::warn("{} of {} links are not what a fresh build finds: a bug, please report it with the scene",
                    found.differing, found.links);

@@ -36,9 +36,14 @@ class WorkLog {
     return work();
   }
 
-  void set_passes(const gpu::PassTimes& passes) {
+  // The light field's own: passes on the device, and stages on the host.
+  void set_times(const gpu::Times& times) {
     const std::lock_guard lock(mutex_);
-    passes_ = passes;
+    passes_ = times.passes;
+    for (const auto& [name, time] : times.host) {
+      passes_[name].calls += time.calls;
+      passes_[name].gpu_ms += time.ms;
+    }
   }
 
   void count(const std::string& what, std::uint64_t many) {

@@ -71,7 +71,12 @@ INSTANTIATE_TEST_SUITE_P(
                2,
                {"reference", "thesis"}},
         BadUse{"ReferenceWithPsf", bake + "--method reference", 2, {"--psf", "reference", "leave it out"}},
-        BadUse{"LinksWithSpp", bake + "--spp 16", 2, {"--spp", "links", "leave it out"}},
+        BadUse{"SppOfNoReference", bake + "--spp 16", 2, {"--spp", "auto", "reference", "leave it out"}},
+        BadUse{"RaysWithAPsfSize", bake + "--method rays --psf-size 2x", 2, {"--psf-size", "thesis, links"}},
+        BadUse{
+            "OptionsThatNoMethodHasTogether", bake + "--sets 4 --weights equal", 2, {"auto", "leave it out"}},
+        BadUse{"Error", bake + "--error none", 2, {"--error none", "2%"}},
+        BadUse{"ErrorNegative", bake + "--error=-1%", 2, {"--error -1%", "2%"}},
         BadUse{"DumpPsf", bake + "--dump-psf 8", 2, {"--dump-psf 8", "0..7"}},
         BadUse{"DumpIntoAFile", bake + "--dump /dev/null", 2, {"/dev/null", "folder"}},
         BadUse{"OutIsNoExr", "bake " + cornell + " --out OUT.png --psf 8", 2, {".exr"}},

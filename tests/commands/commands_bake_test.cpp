@@ -25,7 +25,8 @@ class Bake : public ::testing::Test {
   // Bakes the Cornell room small and returns all values of E.exr.
   std::vector<float> bake(const std::string& name, const std::string& options = "") {
     const auto ran =
-        run("bake " + cornell + " --validation --size 64 --bounces 2 --out " + path(name) + " " +
+        run("bake " + cornell + " --validation --size 64 --out " + path(name) + " " +
+            (options.find("--bounces ") == std::string::npos ? "--bounces 2 " : "") +
             (options.find("--psf ") == std::string::npos && options.find("reference") == std::string::npos
                  ? "--psf 24 "
                  : "") +
@@ -94,9 +95,9 @@ TEST_F(Bake, ReportsWhatItDid) {
 }
 
 TEST_F(Bake, TakesItsPsfSizeInPixelsOrTimesTheSize) {
-  const auto usual = bake("1.exr");
+  const auto usual = bake("1.exr", "--method links");
   const auto report = [&] { return json::parse(std::ifstream(path("r.json"))); };
-  EXPECT_NE(bake("2.exr", "--psf-size 2x --report " + path("r.json")), usual);
+  EXPECT_NE(bake("2.exr", "--method links --psf-size 2x --report " + path("r.json")), usual);
   EXPECT_EQ(report()["psf_size"], 128);
   EXPECT_NE(bake("3.exr", "--psf-size 0.5x --report " + path("r.json")), usual);
   EXPECT_EQ(report()["psf_size"], 32);
@@ -105,15 +106,54 @@ TEST_F(Bake, TakesItsPsfSizeInPixelsOrTimesTheSize) {
 }
 
 TEST_F(Bake, ReportsWeightsAndSeed) {
-  const auto usual = bake("1.exr");
+  const auto usual = bake("1.exr", "--method links");
   EXPECT_NE(bake("2.exr", "--weights equal --seed 3 --report " + path("r.json")), usual);
   const auto report = json::parse(std::ifstream(path("r.json")));
   EXPECT_EQ(report["weights"], "equal");
   EXPECT_EQ(report["seed"], 3);
 }
 
-TEST_F(Bake, LinksAreTheUsualMethodAndSayWhatTheyTake) {
+TEST_F(Bake, RaysAreTheUsualMethodOfACpu) {
   bake("E.exr", "--report " + path("r.json"));
+  const auto report = json::parse(std::ifstream(path("r.json")));
+  EXPECT_EQ(report["method"], "rays");
+  EXPECT_EQ(report["bounces_used"], 2);
+  EXPECT_GT(report["error_estimate"], 0);
+  for (const char* stage : {"texel_records", "ray_index", "rows", "links", "direct_light", "bounces"})
+    EXPECT_GT(report["time_ms"]["host"][stage]["ms"], 0) << stage;
+}
+
+// Lamps are exact, so that no more than what reflects is left to the directions.
+TEST_F(Bake, LampsAreExactForEveryMethod) {
+  const auto truth = bake("reference.exr", "--method reference --spp 2048 --bounces 1");
+  double sum = 0;
+  for (const float value : truth) sum += value;
+  for (const char* method : {"rays", "links", "thesis --direct exact"}) {
+    const auto light = bake("E.exr", std::string("--bounces 1 --method ") + method);
+    double squares = 0;
+    for (std::size_t i = 0; i < truth.size(); ++i) squares += (light[i] - truth[i]) * (light[i] - truth[i]);
+    const auto count = static_cast<double>(truth.size());
+    EXPECT_LT(std::sqrt(squares / count) / (sum / count), 0.03) << method;
+  }
+}
+
+TEST_F(Bake, AnErrorThatIsAskedForChoosesTheQuality) {
+  const auto baked_with = [&](const std::string& options) {
+    const auto ran =
+        run("bake " + cornell + " --out " + path("E.exr") + " --report " + path("r.json") + " " + options);
+    EXPECT_EQ(ran.status, 0) << ran.output;
+    EXPECT_THAT(ran.output, ContainsRegex("--size [0-9]+ --psf [0-9]+: [0-9.]+ % off"));
+    return json::parse(std::ifstream(path("r.json")));
+  };
+  const auto coarse = baked_with("--error 30%"), fine = baked_with("--error 0.03");
+  EXPECT_LT(coarse["size"].get<int>() * coarse["size"].get<int>() * coarse["psf"].get<int>(),
+            fine["size"].get<int>() * fine["size"].get<int>() * fine["psf"].get<int>());
+  EXPECT_LT(fine["error_estimate"], 0.03);
+  EXPECT_EQ(baked_with("--error 5% --size 32")["size"], 32);
+}
+
+TEST_F(Bake, LinksSayWhatTheyTake) {
+  bake("E.exr", "--method links --report " + path("r.json"));
   const auto report = json::parse(std::ifstream(path("r.json")));
   EXPECT_EQ(report["method"], "links");
   EXPECT_EQ(report["bounces_used"], 2);
@@ -151,8 +191,8 @@ TEST_F(Bake, OptionsOfTheThesisAskForIt) {
 
 TEST(Links, ThatDoNotFitAreRefusedBeforeTheyAreMade) {
   const TempFolder folder;
-  const auto ran =
-      run("bake " + cornell + " --size 2048 --psf 6144 --out " + (folder.path() / "E.exr").string());
+  const auto ran = run("bake " + cornell + " --method links --size 2048 --psf 6144 --out " +
+                       (folder.path() / "E.exr").string());
   EXPECT_EQ(ran.status, 1);
   EXPECT_THAT(ran.output, AllOf(HasSubstr("links of"), HasSubstr("MiB"), HasSubstr("--method thesis")));
   EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
@@ -160,16 +200,20 @@ TEST(Links, ThatDoNotFitAreRefusedBeforeTheyAreMade) {
 
 TEST_F(Bake, LiveMovesEndWhereAFreshBakeDoes) {
   const std::string moves = "--move cube1=-0.4,0.3,0 --move cube2=0.2,0,0.1 --move cube1=0.1,0,0";
-  const auto fresh = bake("fresh.exr", moves),
-             live = bake("live.exr", moves + " --live --report " + path("r.json")), rest = bake("rest.exr");
-  const auto report = json::parse(std::ifstream(path("r.json")));
-  if (report["method"] == "links") {
-    EXPECT_EQ(report["links"]["checked"], report["texels_valid"].get<int>() * report["psf"].get<int>() / 2);
-    EXPECT_EQ(report["links"]["differing"], 0);
+  for (const std::string method : {"rays", "links"}) {
+    const auto by = "--method " + method + " ";
+    const auto fresh = bake("fresh.exr", by + moves),
+               live = bake("live.exr", by + moves + " --live --report " + path("r.json")),
+               rest = bake("rest.exr", by);
+    const auto report = json::parse(std::ifstream(path("r.json")));
+    if (method == "links") {
+      EXPECT_EQ(report["links"]["checked"], report["texels_valid"].get<int>() * report["psf"].get<int>() / 2);
+      EXPECT_EQ(report["links"]["differing"], 0);
+    }
+    EXPECT_EQ(fresh, live);
+    EXPECT_NE(fresh, rest);
+    EXPECT_EQ(fresh, bake("sum.exr", by + "--move cube1=-0.3,0.3,0 --move cube2=0.2,0,0.1"));
   }
-  EXPECT_EQ(fresh, live);
-  EXPECT_NE(fresh, rest);
-  EXPECT_EQ(fresh, bake("sum.exr", "--move cube1=-0.3,0.3,0 --move cube2=0.2,0,0.1"));
 }
 
 // The light field against path tracing: a wrong side, weight or bounce would show here as bias.

@@ -143,7 +143,7 @@ test('a room of two players and a watcher', async (t) => {
       );
     const wanted = [
       ...['input', 'place', 'update', 'encode', 'send'].map((name) => ['stage', name]),
-      ...['emit_links', 'route_links', 'gather', 'tone_map'].map((name) => ['pass', name]),
+      ...['links', 'direct_light', 'bounces', 'tone_map'].map((name) => ['pass', name]),
     ];
     const text = await (await fetch(`${url}/metrics`)).text();
     for (const [label, name] of wanted)

@@ -65,7 +65,8 @@ TEST_F(LinksMethod, AgreesWithTheThesis) {
                             .psf = 96,
                             .psf_size = 512,
                             .bounces = bounces,
-                            .thesis = {.abuffer = ABuffer::list, .sort = Sort::scan}};
+                            .thesis = {.abuffer = ABuffer::list, .sort = Sort::scan},
+                            .direct = Direct::psf};
     const auto thesis = make_light_field("thesis", device(), scene, settings);
     settled(*thesis, at_rest(scene));
     EXPECT_LT(rel_rmse(fresh(scene, settings), thesis->irradiance()), 0.03);
@@ -178,27 +179,30 @@ TEST_F(Moves, DirectLightFollowsAtOnce) {
   auto black = scene_;
   for (auto& material : black.materials) material.base_colour = glm::vec3(0);
   black.materials[black.surfaces.back().material].emission = {1, 2, 3};  // of a cube
-  auto settings = settings_;
-  settings.links.step_bounces = 0.125f;
-  const auto links = make_light_field("links", device(), black, settings);
-  auto offsets = at_rest(black);
-  settled(*links, offsets);
-  std::mt19937 random(2);
-  for (int move = 0; move < 100; ++move) {
-    for (std::size_t body = 1; body < offsets.size(); ++body)  // through each other, too
-      nudge(offsets[body], random);
-    stepped(*links, offsets);
+  for (const auto direct : {Direct::psf, Direct::exact}) {
+    auto settings = settings_;
+    settings.links.step_bounces = 0.125f;
+    settings.direct = direct;
+    const auto links = make_light_field("links", device(), black, settings);
+    auto offsets = at_rest(black);
+    settled(*links, offsets);
+    std::mt19937 random(2);
+    for (int move = 0; move < 100; ++move) {
+      for (std::size_t body = 1; body < offsets.size(); ++body)  // through each other, too
+        nudge(offsets[body], random);
+      stepped(*links, offsets);
+    }
+    const auto afresh = fresh(black, settings, offsets);
+    for (int part = 0; part < 8; ++part) {  // all that is left: by now each part knows which directions count
+      offsets[1].x += 1e-6f;
+      stepped(*links, offsets);
+    }
+    const auto kept = links->irradiance();
+    EXPECT_LT(rel_rmse(kept, afresh), 1e-3);
+    settled(*links, offsets);
+    EXPECT_LT(rel_rmse(kept, links->irradiance()), 1e-5) << "one link too much or too little would be 3e-4";
+    EXPECT_GT(rel_rmse(fresh(black, settings), afresh), 0.02) << "the moves must matter";
   }
-  const auto afresh = fresh(black, settings, offsets);
-  for (int part = 0; part < 8; ++part) {  // all that is left: by now each part knows which directions count
-    offsets[1].x += 1e-6f;
-    stepped(*links, offsets);
-  }
-  const auto kept = links->irradiance();
-  EXPECT_LT(rel_rmse(kept, afresh), 1e-3);
-  settled(*links, offsets);
-  EXPECT_LT(rel_rmse(kept, links->irradiance()), 1e-5) << "one link too much or too little would be 3e-4";
-  EXPECT_GT(rel_rmse(fresh(black, settings), afresh), 0.02) << "the moves must matter";
 }
 
 // Parts of the directions a step: each map is on its way to where all of them lead.
@@ -280,8 +284,11 @@ TEST_F(LinksMethod, DoubleSidedLampsShineBothWaysAndNotOnThemselves) {
            builder.material(glm::vec3(0), glm::vec3(10), double_sided));  // faces up
     square(builder, "floor", -1, false, chart_b, builder.material(glm::vec3(0.5)));
     const auto scene = loaded(builder);
-    const Settings settings{
-        .size = 64, .psf = 384, .bounces = 1, .thesis = {.abuffer = ABuffer::list, .sort = Sort::scan}};
+    const Settings settings{.size = 64,
+                            .psf = 384,
+                            .bounces = 1,
+                            .thesis = {.abuffer = ABuffer::list, .sort = Sort::scan},
+                            .direct = Direct::psf};
     const auto thesis = make_light_field("thesis", device(), scene, settings);
     settled(*thesis, at_rest(scene));
     const auto found = fresh(scene, settings);

@@ -7,7 +7,6 @@
 #include <thread>
 
 #include "device_for_tests.hpp"
-#include "lichtveld/room/quality.hpp"
 #include "lichtveld/room/room.hpp"
 #include "lichtveld/scene/motion.hpp"
 #include "light_fields.hpp"
@@ -108,7 +107,7 @@ TEST_F(LiveRoom, ShowsTheRoomAtRestAndThenFollowsItsBodies) {
   const auto last = audience.newest();
   EXPECT_EQ(last.places, places);
   EXPECT_LT(difference(last.shown.bytes, shown_at(places)), 0.05) << "of 255: it has all the light";
-  EXPECT_GT(difference(first.shown.bytes, last.shown.bytes), 0.3) << "the moves must matter";
+  EXPECT_GT(difference(first.shown.bytes, last.shown.bytes), 0.2) << "the moves must matter";
 }
 
 TEST_F(LiveRoom, EachUpdateIsHandedToWhatIsAroundIt) {
@@ -269,19 +268,6 @@ TEST_F(LiveRoom, AfterAFailureAllIsComputedAfresh) {
   using enum lightfield::Light;
   EXPECT_EQ(light.before, (std::vector{unknown, moved, unknown}));
   EXPECT_EQ(light.light(), lightfield::Light::settled);
-}
-
-TEST_F(LiveRoom, TheFinestMapInTimeIsFound) {
-  const auto& links = lightfield::engine("links");
-  const auto stop_at_once = room::finest_within(1000ms, links, device(), scene_, {}, [] { return true; });
-  EXPECT_EQ(stop_at_once.size, 64u);
-  EXPECT_EQ(stop_at_once.psf, 24u);
-  int asked = 0;
-  const auto second = room::finest_within(10s, links, device(), scene_, {}, [&] { return ++asked > 2; });
-  EXPECT_EQ(second.size, 64u);
-  EXPECT_EQ(second.psf, 96u);
-  const auto none = room::finest_within(0ms, links, device(), scene_, {}, [] { return false; });
-  EXPECT_EQ(none.size, 64u) << "the coarsest, where none is in time";
 }
 
 }  // namespace

@@ -4,7 +4,6 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <utility>
 
 #include "core/parallel.hpp"
 
@@ -32,14 +31,33 @@ float weight_of(const LampSamples& samples, std::uint32_t i, const glm::vec3& to
   return facing * there / (squared * squared);
 }
 
+// Whether a box may lie between a place and another box: whether on the way from the one to the other, all of
+// which grows with the way, some part is in it.
+bool may_hide(const glm::vec3& low, const glm::vec3& high, const glm::vec3& place, const glm::vec3& lamp_low,
+              const glm::vec3& lamp_high) {
+  float first = 0, last = 1;                            // of the way
+  const auto at_least = [&](float from, float slope) {  // from + way * slope >= 0
+    if (slope > 0)
+      first = std::max(first, -from / slope);
+    else if (slope < 0)
+      last = std::min(last, -from / slope);
+    else if (from < 0)
+      last = -1;
+  };
+  for (int axis = 0; axis < 3; ++axis) {
+    at_least(high[axis] - place[axis], place[axis] - lamp_low[axis]);
+    at_least(place[axis] - low[axis], lamp_high[axis] - place[axis]);
+  }
+  return first <= last;
+}
+
 }  // namespace
 
 LampLight::LampLight(const scene::RayIndex& index, const scene::Scene& scene,
-                     std::span<const TexelRecord> receivers, std::function<bool(std::uint32_t)> covered)
+                     std::span<const TexelRecord> receivers)
     : index_(index),
       scene_(scene),
       receivers_(receivers),
-      covered_(std::move(covered)),
       of_body_(scene.bodies.size()),
       irradiance_(receivers.size(), glm::vec3(0)) {
   for (std::uint32_t i = 0; i < receivers.size(); ++i) of_body_[receivers[i].body].push_back(i);
@@ -58,37 +76,39 @@ LampLight::LampLight(const scene::RayIndex& index, const scene::Scene& scene,
   }
 }
 
-void LampLight::light(const scene::Offsets& offsets, const Moves& moves,
-                      std::span<const std::uint32_t> recovered) {
+void LampLight::light(const scene::Offsets& offsets, const Moves& moves) {
   offsets_ = offsets;
-  touched_.assign(receivers_.size(), false);
-  for (auto& lamp : lamps_) light(lamp, moves, recovered);
-  for (std::uint32_t i = 0; i < receivers_.size(); ++i) {
-    if (!touched_[i]) continue;
+  std::vector<char> touched(receivers_.size(), 0);
+  for (auto& lamp : lamps_) {
+    const auto by_lamp = light(lamp, moves);
+    for (std::size_t i = 0; i < touched.size(); ++i) touched[i] |= by_lamp[i];
+  }
+  for (std::size_t i = 0; i < receivers_.size(); ++i) {
+    if (!touched[i]) continue;
     irradiance_[i] = glm::vec3(0);
     for (const auto& lamp : lamps_) irradiance_[i] += lamp.arriving[i];
   }
 }
 
-void LampLight::light(Lamp& lamp, const Moves& moves, std::span<const std::uint32_t> recovered) {
+std::vector<char> LampLight::light(Lamp& lamp, const Moves& moves) {
   const auto bodies = static_cast<std::uint32_t>(of_body_.size());
   const bool all = moves.has(lamp.shape.body);
   const auto moved = [&](std::uint32_t body) { return all || moves.has(body); };
-  std::vector<char> touched(receivers_.size(), 0);
-  for (const std::uint32_t receiver : recovered) touched[receiver] = 1;
+  enum : char { same, hidden_anew, reset };
+  std::vector<char> touched(receivers_.size(), same);
   for (std::uint32_t body = 1; body < bodies; ++body)
     for (std::uint32_t of = 0; of < bodies; ++of)
       if (moved(body) && !moved(of))
         for (const auto& [receiver, bits] : lamp.hidden[body][of]) {
           lamp.seen[receiver] = lamp.own[receiver];
-          touched[receiver] = 2;
+          touched[receiver] = reset;
         }
   for (std::uint32_t body = 0; body < bodies; ++body) {
     if (!moved(body)) continue;
     const auto& receivers = of_body_[body];
     for_each_index(0, static_cast<std::uint32_t>(receivers.size()), receivers_of_a_task, [&](std::uint32_t i) {
       find_own(lamp, receivers[i]);
-      touched[receivers[i]] = 2;
+      touched[receivers[i]] = reset;
     });
   }
   for (std::uint32_t of = 0; of < bodies; ++of)
@@ -98,17 +118,23 @@ void LampLight::light(Lamp& lamp, const Moves& moves, std::span<const std::uint3
       auto& hidden = lamp.hidden[body][of];
       if (anew) hidden = find_hidden(lamp, body, of);
       for (const auto& [receiver, bits] : hidden) {
-        if (!anew && touched[receiver] != 2) continue;
+        if (!anew && touched[receiver] != reset) continue;
         lamp.seen[receiver] &= ~bits;
-        touched[receiver] = std::max<char>(touched[receiver], 1);
+        touched[receiver] = std::max<char>(touched[receiver], hidden_anew);
       }
     }
   for_each_index(0, static_cast<std::uint32_t>(receivers_.size()), receivers_of_a_task,
                  [&](std::uint32_t receiver) {
-                   if (touched[receiver]) lamp.arriving[receiver] = arriving(lamp, receiver);
+                   if (touched[receiver] != same) lamp.arriving[receiver] = arriving(lamp, receiver);
                  });
-  for (std::uint32_t i = 0; i < receivers_.size(); ++i)
-    if (touched[i]) touched_[i] = true;
+  return touched;
+}
+
+// Whether a body lies on it, so that nothing arrives.
+bool LampLight::contact(std::uint32_t receiver, std::uint32_t body) const {
+  const auto& record = receivers_[receiver];
+  return index_.contact(body, offsets_[body], record.position + offsets_[record.body], record.face,
+                        record.triangle);
 }
 
 void LampLight::find_own(Lamp& lamp, std::uint32_t receiver) const {
@@ -124,7 +150,8 @@ void LampLight::find_own(Lamp& lamp, std::uint32_t receiver) const {
       lamp.unshadowed[receiver] += irradiance_of(patch, place, record.normal, record.face);
   }
   Bits bits = 0;
-  if (lamp.unshadowed[receiver] != glm::vec3(0)) {
+  if (lamp.unshadowed[receiver] != glm::vec3(0) && !contact(receiver, 0) &&
+      (record.body == 0 || !contact(receiver, record.body))) {
     bits = trace(lamp, receiver, 0, all_samples);
     if (record.body != 0) bits = trace(lamp, receiver, record.body, bits);
   }
@@ -165,9 +192,13 @@ std::vector<LampLight::Hidden> LampLight::find_hidden(const Lamp& lamp, std::uin
     const auto& record = receivers_[receiver];
     if (lamp.own[receiver] == 0) return;
     const glm::vec3 place = record.position + offsets_[record.body];
-    if (glm::any(glm::greaterThan(glm::min(place, lamp_low), high)) ||
-        glm::any(glm::lessThan(glm::max(place, lamp_high), low)))
+    if (!may_hide(low, high, place, lamp_low, lamp_high)) return;
+    const bool inside =
+        glm::all(glm::greaterThanEqual(place, low)) && glm::all(glm::lessThanEqual(place, high));
+    if (inside && contact(receiver, body)) {
+      found.push_back({receiver, all_samples});
       return;
+    }
     Bits wanted = 0;
     const glm::vec3 a = low - place, b = high - place, to = offsets_[lamp.shape.body] - place;
     std::array<std::uint32_t, samples_of_lamp> misses;
@@ -200,7 +231,7 @@ std::vector<LampLight::Hidden> LampLight::find_hidden(const Lamp& lamp, std::uin
 
 glm::vec3 LampLight::arriving(const Lamp& lamp, std::uint32_t receiver) const {
   const glm::vec3& unshadowed = lamp.unshadowed[receiver];
-  if (unshadowed == glm::vec3(0) || covered_(receiver)) return glm::vec3(0);
+  if (unshadowed == glm::vec3(0)) return glm::vec3(0);
   const auto& record = receivers_[receiver];
   const auto& samples = lamp.shape.samples;
   const Bits seen = lamp.seen[receiver];

@@ -7,7 +7,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <span>
 #include <vector>
 
@@ -21,14 +20,11 @@ namespace lichtveld::lightfield {
 
 class LampLight {
  public:
-  // All of these must outlive it. `receivers`: where light arrives; `covered(receiver)`: whether something lies
-  // on it.
-  LampLight(const scene::RayIndex& index, const scene::Scene& scene, std::span<const TexelRecord> receivers,
-            std::function<bool(std::uint32_t receiver)> covered);
+  // All of these must outlive it. `receivers`: where light arrives.
+  LampLight(const scene::RayIndex& index, const scene::Scene& scene, std::span<const TexelRecord> receivers);
 
-  // Bodies are where `offsets` say; `moves`: since the last time. `recovered`: receivers on which `covered` may
-  // say something else.
-  void light(const scene::Offsets& offsets, const Moves& moves, std::span<const std::uint32_t> recovered);
+  // Bodies are where `offsets` say; `moves`: since the last time.
+  void light(const scene::Offsets& offsets, const Moves& moves);
 
   // E [W m^-2] of each receiver.
   const std::vector<glm::vec3>& irradiance() const { return irradiance_; }
@@ -48,20 +44,20 @@ class LampLight {
     std::vector<std::vector<std::vector<Hidden>>> hidden;  // by body, then by the receivers' body
   };
 
-  void light(Lamp& lamp, const Moves& moves, std::span<const std::uint32_t> recovered);
+  // True for each receiver to which another light may arrive now.
+  std::vector<char> light(Lamp& lamp, const Moves& moves);
   void find_own(Lamp& lamp, std::uint32_t receiver) const;
   std::vector<Hidden> find_hidden(const Lamp& lamp, std::uint32_t body, std::uint32_t receivers) const;
   glm::vec3 arriving(const Lamp& lamp, std::uint32_t receiver) const;
+  bool contact(std::uint32_t receiver, std::uint32_t body) const;
   Bits trace(const Lamp& lamp, std::uint32_t receiver, std::uint32_t body, Bits wanted) const;
 
   const scene::RayIndex& index_;
   const scene::Scene& scene_;
   std::span<const TexelRecord> receivers_;
-  std::function<bool(std::uint32_t)> covered_;
   std::vector<std::vector<std::uint32_t>> of_body_;  // receivers
   scene::Offsets offsets_;
   std::vector<Lamp> lamps_;
-  std::vector<bool> touched_;
   std::vector<glm::vec3> irradiance_;
 };
 

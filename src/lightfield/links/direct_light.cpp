@@ -1,5 +1,6 @@
 #include "links/direct_light.hpp"
 
+#include <algorithm>
 #include <numbers>
 
 #include "shaders/direct_light.comp.h"
@@ -25,15 +26,34 @@ gpu::Buffer scaled(const gpu::Device& device, const Lamps& lamps, float scale) {
 
 }  // namespace
 
-DirectLight::DirectLight(const gpu::Device& device, const LinkTable& table)
-    : sum_(device, "direct_light", shaders::direct_light_comp, {table.bits}),
+DirectLight::DirectLight(const gpu::Device& device, const scene::Scene& scene, const LinkTable& table,
+                         Direct way)
+    : device_(device),
+      records_(table.records),
+      sum_(device, "direct_light", shaders::direct_light_comp, {table.bits}),
       scale_(scale_for(table.records.lamps())),
       lamps_(scaled(device, table.records.lamps(), scale_)),
       sums_(device, "lightfield/direct_light", std::uint64_t{table.texels} * 2 * sizeof(glm::uvec3),
-            vk::BufferUsageFlagBits::eStorageBuffer | vk::BufferUsageFlagBits::eTransferDst) {
+            vk::BufferUsageFlagBits::eStorageBuffer | vk::BufferUsageFlagBits::eTransferDst),
+      irradiance_(device, "lightfield/lamp_irradiance", std::uint64_t{table.texels} * sizeof(glm::vec4),
+                  vk::BufferUsageFlagBits::eStorageBuffer, gpu::Memory::host) {
+  std::ranges::fill(irradiance_.as<glm::vec4>(), glm::vec4(0));
+  if (way == Direct::exact) {
+    index_ = std::make_unique<scene::RayIndex>(scene);
+    exact_.emplace(*index_, scene, records_.all());
+  }
   gpu::Frame frame(device);
   frame.clear("direct_light", sums_);
   frame.submit_and_wait();
+}
+
+void DirectLight::light(const scene::Offsets& offsets, const Moves& moves) {
+  if (!exact_) return;
+  const gpu::TimeLedger::Stage stage(device_.times(), "direct_light");
+  exact_->light(offsets, moves);
+  const auto irradiance = irradiance_.as<glm::vec4>();
+  for (std::size_t texel = 0; texel < irradiance.size(); ++texel)
+    irradiance[texel] = glm::vec4(exact_->irradiance()[texel], 0);
 }
 
 void DirectLight::sum(gpu::Frame& frame, const LightMap& map, const LinkTable& table,
@@ -47,7 +67,7 @@ void DirectLight::sum(gpu::Frame& frame, const LightMap& map, const LinkTable& t
                   shaders::DirectConstants{.texels = table.texels,
                                            .first_pair = chunk.first_pair,
                                            .pairs = chunk.pairs,
-                                           .lamps = table.records.lamps().count(),
+                                           .lamps = linked_lamps(),
                                            .half_pairs = table.pairs / 2},
                   table.groups(), 1);
 }

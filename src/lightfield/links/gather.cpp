@@ -49,7 +49,7 @@ Gather::Gather(const gpu::Device& device, const LinkTable& table)
 void Gather::start(gpu::Frame& frame, const KeptLinks& links) const {
   frame.clear("gather", links.map().total_irradiance, {});
   frame.clear("gather", sums_);
-  end(frame, links, false);
+  end(frame, links, true);
 }
 
 void Gather::bounce(gpu::Frame& frame, const KeptLinks& links) const {
@@ -91,12 +91,13 @@ void Gather::end(gpu::Frame& frame, const KeptLinks& links, bool counted) const 
   const auto& direct = links.direct();
   frame.compute(end_,
                 {gpu::fetches("sums", sums_), gpu::reads("Direct", direct.sums()),
-                 gpu::reads("TexelOf", table.texel_of), gpu::reads("albedo", map.albedo),
-                 gpu::reads("emission", map.emission), gpu::writes("total_irradiance", map.total_irradiance),
+                 gpu::reads("Lamps", direct.irradiance()), gpu::reads("TexelOf", table.texel_of),
+                 gpu::reads("albedo", map.albedo), gpu::reads("emission", map.emission),
+                 gpu::writes("total_irradiance", map.total_irradiance),
                  gpu::writes("half_difference", map.half_difference), gpu::writes("Radiance", radiance_),
                  gpu::writes("Changed", changed_)},
                 shaders::BounceConstants{.texels = table.texels,
-                                         .lamps = table.records.lamps().count(),
+                                         .lamps = direct.left_out(),
                                          .direct_scale = direct.scale(),
                                          .counted = counted ? 1u : 0u},
                 table.groups(), 1);

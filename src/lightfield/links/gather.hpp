@@ -15,7 +15,7 @@ class Gather {
  public:
   Gather(const gpu::Device& device, const LinkTable& table);
 
-  // E = 0, L = Le: no bounce yet.
+  // No bounce yet: E is the exact light of lamps, or 0, and L = Le + albedo / pi * E.
   void start(gpu::Frame& frame, const KeptLinks& links) const;
   // Over all directions.
   void bounce(gpu::Frame& frame, const KeptLinks& links) const;
@@ -23,7 +23,7 @@ class Gather {
   // sums of before count on, but beside what has moved, where most of the links are new.
   void part_bounce(gpu::Frame& frame, const KeptLinks& links, std::uint32_t first, std::uint32_t parts);
 
-  // Of a bounce over all directions that the frame has waited for.
+  // Of a start, or a bounce over all directions, that the frame has waited for.
   struct Change {
     double most;  // largest change of E, any texel and channel [W m^-2]
     double mean;  // of E

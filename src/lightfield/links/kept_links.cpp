@@ -60,7 +60,7 @@ KeptLinks::KeptLinks(const gpu::Device& device, const scene::Scene& scene, const
                 vk::BufferUsageFlagBits::eStorageBuffer, gpu::Memory::host),
       directions_(upload_directions(device, set_.pairs())),
       table_(device, records_, static_cast<std::uint32_t>(set_.pairs().size())),
-      direct_(device, table_),
+      direct_(device, scene, table_, settings.direct.value_or(Direct::exact)),
       capacity_(capacity_for(settings.layers)) {
   layered();
 }
@@ -94,10 +94,11 @@ void KeptLinks::link(const scene::Offsets& to, const Moves& moves, Solution& sol
     for (const auto& move : moves.bodies) route(changed_patches(move), tiles, solution);
   }
   placing.wait();
+  direct_.light(to, moves);
 }
 
 void KeptLinks::sum_direct() {
-  if (std::exchange(done_.direct_summed, true)) return;
+  if (direct_.is_exact() || std::exchange(done_.direct_summed, true)) return;
   gpu::Frame frame(device_, {"links", "direct light"});
   direct_.sum(frame, map_, table_, directions_);
   frame.submit_and_wait();

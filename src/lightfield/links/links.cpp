@@ -30,10 +30,13 @@ double Links::error_estimate() const {
   return split_half_error(irradiance(), gpu::download<glm::vec4>(device_, links_.map().half_difference));
 }
 
-void Links::start() {
+void Links::start(Solution& solution) {
   gpu::Frame frame(device_, {"links", "start"});
   gather_.start(frame, links_);
   frame.submit_and_wait();
+  if (!links_.direct().is_exact()) return;
+  solution.bounces = 1;
+  note_change(solution);
 }
 
 void Links::bounce(Solution& solution) {
@@ -41,6 +44,10 @@ void Links::bounce(Solution& solution) {
   gather_.bounce(frame, links_);
   frame.submit_and_wait();
   ++solution.bounces;
+  note_change(solution);
+}
+
+void Links::note_change(Solution& solution) const {
   const auto change = gather_.change(links_.table());
   solution.residual = bound_on_missing(change.most, links_.records().highest_albedo(), change.mean);
 }
@@ -63,11 +70,11 @@ void Links::part_bounce(Solution& solution) {
 bool Links::converge(Light before, const Enough& enough, Solution& solution) {
   if (settings_.bounces) {
     links_.sum_direct();
-    start();
+    start(solution);
     while (solution.bounces < *settings_.bounces) bounce(solution);
     return true;
   }
-  if (before == Light::unknown) start();
+  if (before == Light::unknown) start(solution);
   if (before == Light::moved) {
     const auto step_bounces = settings_.links.step_bounces;
     if (step_bounces < 1) part_bounce(solution);

@@ -25,8 +25,9 @@ class Links final : public LightField {
   double error_estimate() const override;
   LinkCheck check_kept_links(std::uint32_t pairs) override { return links_.check(pairs); }
 
-  void start();
+  void start(Solution& solution);
   void bounce(Solution& solution);
+  void note_change(Solution& solution) const;
   void part_bounce(Solution& solution);
   bool converge(Light before, const Enough& enough, Solution& solution);
   void present();

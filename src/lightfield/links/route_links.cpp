@@ -171,7 +171,7 @@ void RouteLinks::record(gpu::Frame& frame, const RegionBatch& batch, const Geome
   frame.compute(count_, {gpu::reads("Filled", store.filled), gpu::writes("Counted", counters)},
                 shaders::CountLayersConstants{.pixels = batch.pixels, .limit = limit}, many_groups, 1);
 
-  const auto lamps = to.keeps_direct ? table.records.lamps().count() : 0u;
+  const auto lamps = to.keeps_direct ? to.direct.linked_lamps() : 0u;
   const auto look = [&](const gpu::ComputePipeline& pipeline, const LinkTable::Chunk& chunk,
                         std::vector<gpu::Binding> bindings, std::uint32_t first_job, std::uint32_t groups) {
     bindings.insert(bindings.end(), {gpu::fetches("regions", regions_), gpu::fetches("receivers", receivers_),

@@ -10,7 +10,8 @@ namespace lichtveld::lightfield {
 class Brdf {
  public:
   explicit Brdf(const gpu::Device& device);
-  void record(gpu::Frame& frame, const LightMap& map) const;
+  // `emitted`: whether Le counts, or is known apart.
+  void record(gpu::Frame& frame, const LightMap& map, bool emitted = true) const;
 
  private:
   gpu::ComputePipeline reflect_;

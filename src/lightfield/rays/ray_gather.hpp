@@ -31,6 +31,7 @@ class RayGather {
   Change set_lamps(std::span<const glm::vec3> irradiance);
   Change bounce();
 
+  Direct direct() const { return direct_; }
   // Of each row, what has been gathered [W m^-2], and by how much the first half of the rays says more than
   // both.
   std::span<const glm::vec4> gathered() const { return gathered_; }

@@ -28,16 +28,15 @@ Rays::Rays(const gpu::Device& device, const scene::Scene& scene, const Settings&
       sets_(settings.psf / 2, settings.rays.sets, settings.seed),
       links_(*index_, scene, rows_, sets_),
       filter_(rows_, links_, side_of(settings.rays.sets)),
-      lamps_(*index_, scene, rows_.all(), [this](std::uint32_t row) { return links_.covered(row); }),
-      gather_(rows_, links_, settings.direct),
+      lamps_(*index_, scene, rows_.all()),
+      gather_(rows_, links_, settings.direct.value_or(Direct::exact)),
       irradiance_(std::size_t{settings.size} * settings.size, glm::vec4(0)) {}
 
 bool Rays::compute(Light before, const Moves& moves, const Enough& enough, Solution& solution) {
   auto& times = device_.times();
   if (before == Light::unknown || before == Light::moved) {
     times.time("links", [&] { links_.link(offsets(), moves); });
-    if (settings_.direct == Direct::exact)
-      times.time("direct_light", [&] { lamps_.light(offsets(), moves, links_.changed()); });
+    if (gather_.direct() == Direct::exact) times.time("direct_light", [&] { lamps_.light(offsets(), moves); });
     times.time("block_filter", [&] { filter_.renew(links_.changed()); });
     gather_.find_sources();
     count_rays(solution);
@@ -50,11 +49,12 @@ bool Rays::compute(Light before, const Moves& moves, const Enough& enough, Solut
 // As many bounces as are asked for; or until the bound is met, or falls no more, for rounding. True if that is
 // it.
 bool Rays::converge(Light before, const Enough& enough, Solution& solution) {
-  const bool exact = settings_.direct == Direct::exact;
-  if (before == Light::unknown || settings_.bounces) gather_.start();
+  const bool exact = gather_.direct() == Direct::exact;
+  const bool afresh = before == Light::unknown || settings_.bounces;
+  if (afresh) gather_.start();
+  if (afresh && exact) solution.bounces = 1;
   const auto direct = gather_.set_lamps(lamps_.irradiance());
   if (settings_.bounces) {
-    solution.bounces = exact ? 1 : 0;
     solution.residual = bound_on_missing(direct.most, records_.highest_albedo(), direct.mean);
     while (solution.bounces < *settings_.bounces) bounce(solution);
     return true;

@@ -6,7 +6,8 @@
 namespace lichtveld::lightfield {
 
 BounceSums::BounceSums(const gpu::Device& device, std::uint32_t size)
-    : psf_irradiance(atlas_image(device, "psf_irradiance", size, vk::Format::eR32G32B32A32Sfloat)),
+    : lamp_irradiance(atlas_image(device, "lamp_irradiance", size, vk::Format::eR32G32B32A32Sfloat)),
+      psf_irradiance(atlas_image(device, "psf_irradiance", size, vk::Format::eR32G32B32A32Sfloat)),
       bounce_irradiance{atlas_image(device, "bounce_irradiance 0", size, vk::Format::eR32G32B32A32Sfloat),
                         atlas_image(device, "bounce_irradiance 1", size, vk::Format::eR32G32B32A32Sfloat)} {}
 
@@ -25,7 +26,8 @@ void Blend::bounce_into_total(gpu::Frame& frame, const BounceSums& sums, const L
   frame.compute(bounce_,
                 {gpu::writes("bounce_irradiance_0", sums.bounce_irradiance[0]),
                  gpu::writes("bounce_irradiance_1", sums.bounce_irradiance[1]),
-                 gpu::reads("position", map.position), gpu::writes("total_irradiance", map.total_irradiance),
+                 gpu::reads("lamp_irradiance", sums.lamp_irradiance), gpu::reads("position", map.position),
+                 gpu::writes("total_irradiance", map.total_irradiance),
                  gpu::writes("half_difference", map.half_difference)},
                 map.workgroups, map.workgroups);
 }

@@ -14,6 +14,7 @@ namespace lichtveld::lightfield {
 struct BounceSums {
   BounceSums(const gpu::Device& device, std::uint32_t size);
 
+  gpu::Image lamp_irradiance;                   // rgb: E straight from lamps where it is exact [W m^-2]; or 0
   gpu::Image psf_irradiance;                    // rgb: w_k L_k [W m^-2]; a: w_k [sr]; of one direction
   std::array<gpu::Image, 2> bounce_irradiance;  // their sums over each half of the directions
 };
@@ -24,7 +25,8 @@ class Blend {
   // `half`: which of the bounce's two sums the direction belongs to; `groups`: LightMap::workgroups.
   void psf_into_bounce(gpu::Frame& frame, const BounceSums& sums, std::uint32_t half,
                        std::uint32_t groups) const;
-  // Both halves into total_irradiance, their disagreement into half_difference; clears the bounce.
+  // Both halves and the exact light of lamps into total_irradiance, the halves' disagreement into
+  // half_difference; clears the bounce.
   void bounce_into_total(gpu::Frame& frame, const BounceSums& sums, const LightMap& map) const;
 
  private:

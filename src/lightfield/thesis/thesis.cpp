@@ -45,17 +45,29 @@ Thesis::Thesis(const gpu::Device& device, const scene::Scene& scene, const Setti
       tone_map_(device),
       counters_(device, "lightfield/counters", sizeof(shaders::Counters),
                 vk::BufferUsageFlagBits::eStorageBuffer | vk::BufferUsageFlagBits::eTransferDst,
-                gpu::Memory::host) {}
+                gpu::Memory::host) {
+  if (settings.direct != Direct::exact) return;
+  index_ = std::make_unique<scene::RayIndex>(scene);
+  lamps_.emplace(*index_, scene, records_.all());
+}
 
 // Algorithm 1. Whatever is known of before, it is computed afresh.
 bool Thesis::compute(Light, const Moves& moves, const Enough&, Solution& solution) {
   begin(moves);  // geometry_texture, and L = Le
   Convergence convergence(records_);
   solution = {.texels_valid = records_.count()};
+  if (lamps_) {
+    light_by_lamps(moves);
+    end_bounce(solution);
+    solution.bounces = 1;
+    solution.residual = convergence.measure(irradiance());
+  }
+  const auto first_of_psfs = solution.bounces;
   while (!done(solution)) {
-    render_bounce(solution);  // for each PSF: emit_radiance, stencil_routing, blend
-    if (solution.bounces == 0 && widen(solution)) continue;  // layers would have been lost: again, with more
-    end_bounce(solution);                                    // blend into the total; brdf
+    const bool count = solution.bounces == first_of_psfs;
+    render_bounce(solution, count);          // for each PSF: emit_radiance, stencil_routing, blend
+    if (count && widen(solution)) continue;  // layers would have been lost: again, with more
+    end_bounce(solution);                    // blend into the total; brdf
     ++solution.bounces;
     solution.residual = convergence.measure(irradiance());
   }
@@ -90,14 +102,25 @@ void Thesis::begin(const Moves& moves) {
   geometry_.place(offsets(), settings_.raster());
   gpu::Frame frame(device_, {"thesis", "set up"});
   frame.clear("blend", map_.total_irradiance, {});
+  if (moves.all) frame.clear("blend", sums_.lamp_irradiance, {});
   clear_bounce(frame);
   geometry_texture_.record(frame, geometry_, map_, moves);
-  brdf_.record(frame, map_);
+  brdf_.record(frame, map_, !lamps_);
   frame.submit_and_wait();
 }
 
-void Thesis::render_bounce(Solution& solution) {
-  const bool count = solution.bounces == 0;
+// The bounce of lamps, which no PSF brings: into sums_.lamp_irradiance.
+void Thesis::light_by_lamps(const Moves& moves) {
+  const gpu::TimeLedger::Stage stage(device_.times(), "direct_light");
+  lamps_->light(offsets(), moves);
+  std::vector<glm::vec4> texels(std::size_t{map_.size} * map_.size, glm::vec4(0));
+  for (std::uint32_t number = 0; number < records_.count(); ++number)
+    texels[records_[number].atlas] = glm::vec4(lamps_->irradiance()[number], 0);
+  gpu::fill<glm::vec4>(device_, sums_.lamp_irradiance, texels);
+}
+
+// `count`: what is counted, is counted in this one.
+void Thesis::render_bounce(Solution& solution, bool count) {
   if (count) solution.overflow_pixels = solution.rays = solution.misses = solution.rays_unknown = 0;
   const bool observing = count && observer_ && observed_ < directions_.size();
   for (std::uint32_t first = 0; first < directions_.size();) {
@@ -156,12 +179,13 @@ void Thesis::clear_bounce(gpu::Frame& frame) const {
 void Thesis::end_bounce(const Solution& solution) {
   gpu::Frame frame(device_, {"thesis", bounce_label(solution)});
   blend_.bounce_into_total(frame, sums_, map_);
-  brdf_.record(frame, map_);
+  brdf_.record(frame, map_, !lamps_);
   frame.submit_and_wait();
 }
 
 void Thesis::present() {
   gpu::Frame frame(device_, {"thesis", "present"});
+  if (lamps_) brdf_.record(frame, map_);
   geometry_texture_.find_shown(frame, map_);
   tone_map_.record(frame, map_);
   frame.submit_and_wait();

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
+#include "core/lamp_light.hpp"
 #include "lichtveld/lightfield/directions.hpp"
 #include "lichtveld/lightfield/light_field.hpp"
 #include "lichtveld/lightfield/settings.hpp"
@@ -40,10 +42,11 @@ class Thesis final : public LightField {
   std::uint32_t capacity_for(std::uint32_t layers) const;
   bool done(const Solution& solution) const;
   void begin(const Moves& moves);
-  void render_bounce(Solution& solution);
+  void render_bounce(Solution& solution, bool count);
   void render_psfs(Range range, bool count, Solution& solution);
   bool widen(const Solution& solution);
   void clear_bounce(gpu::Frame& frame) const;
+  void light_by_lamps(const Moves& moves);
   void end_bounce(const Solution& solution);
   void present();
   void show_stages();
@@ -63,6 +66,8 @@ class Thesis final : public LightField {
   Brdf brdf_;
   ToneMap tone_map_;
   gpu::Buffer counters_;
+  std::unique_ptr<const scene::RayIndex> index_;  // of lamps_
+  std::optional<LampLight> lamps_;                // with Direct::exact
   StageObserver observer_;
   std::uint32_t observed_ = 0;  // direction
 };

@@ -12,7 +12,8 @@ enum class ABuffer { stencil, list };
 enum class Sort { bitonic, compare_swap, scan };  // as SORT_* in shaders/include/shared.h
 // A direction's share: its solid angle (the thesis' correction factor), or the same for all.
 enum class Weights { solid_angle, equal };
-// Light straight from lamps: in closed form, with shadows by sample points; or by the directions, as all other light.
+// Light straight from lamps: in closed form, with shadows by sample points; or by the directions, as all other
+// light.
 enum class Direct { exact, psf };
 
 // The words for them, on the command line and in tables.
@@ -42,7 +43,8 @@ struct LinksSettings {
 
 // Of the engine `rays`.
 struct RaysSettings {
-  // Sets of directions that neighbouring texels share out among themselves: 1, 4 (blocks of 2 x 2) or 16 (4 x 4).
+  // Sets of directions that neighbouring texels share out among themselves: 1, 4 (blocks of 2 x 2) or 16 (4 x
+  // 4).
   std::uint32_t sets = 16;
 };
 
@@ -68,7 +70,7 @@ struct Settings {
   ThesisSettings thesis = {};
   LinksSettings links = {};
   RaysSettings rays = {};
-  Direct direct = Direct::exact;  // of `rays`
+  std::optional<Direct> direct = {};  // empty: exact, but of `thesis` as published
 
   std::uint32_t raster() const { return psf_size > 0 ? psf_size : size; }  // of a PSF [pixels a side]
 };
