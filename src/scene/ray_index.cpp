@@ -1,5 +1,6 @@
 #include "lichtveld/scene/ray_index.hpp"
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,8 @@ namespace {
 constexpr float skin_of_radius = 2e-6f;
 // Surfaces lie on each other if their faces look at each other within this cosine.
 constexpr float facing_cosine = 0.99f;
+// Whether a body bulges is looked for by all its corners above all its triangles, if these are no more.
+constexpr std::size_t most_pairs = 10'000'000;
 
 // Triangles of one body and kind, which Embree numbers afresh.
 struct Part {
@@ -91,9 +94,17 @@ struct RayIndex::Trees {
   std::vector<std::array<Part, 2>>
       parts;  // of each body: one-sided, double-sided; they must stay where they are
   std::vector<EmbreeTree> bodies;
+  // Of each triangle of a body that moves and was looked at: its normal, and how far its body reaches above it
+  // and below [m].
+  struct Reach {
+    glm::vec3 normal{0};
+    float above = 0, below = 0;
+  };
+  std::vector<Reach> reaches;  // by triangle; without a normal: not known
 
  private:
   void add(RTCScene tree, Part& part, bool double_sided, const Scene& scene);
+  void find_reaches(const Scene& scene);
 };
 
 RayIndex::Trees::Trees(const Scene& scene, const glm::vec3& centre) : parts(scene.bodies.size()) {
@@ -117,6 +128,33 @@ RayIndex::Trees::Trees(const Scene& scene, const glm::vec3& centre) : parts(scen
         add(tree.get(), part, double_sided, scene);
     rtcCommitScene(tree.get());
     require_success(device.get(), scene);
+  }
+  find_reaches(scene);
+}
+
+void RayIndex::Trees::find_reaches(const Scene& scene) {
+  reaches.resize(scene.indices.size() / 3);
+  std::vector<std::vector<glm::vec3>> corners(parts.size());
+  for (const Vertex& vertex : scene.vertices)
+    if (vertex.body != 0) corners[vertex.body].push_back(vertex.position);
+  for (std::size_t body = 1; body < parts.size(); ++body) {
+    const std::size_t triangles = parts[body][0].triangles.size() + parts[body][1].triangles.size();
+    if (triangles * corners[body].size() > most_pairs) continue;
+    for (const auto& part : parts[body])
+      for (const std::uint32_t triangle : part.triangles) {
+        const auto corner = [&](std::size_t k) {
+          return scene.vertices[scene.indices[3 * std::size_t{triangle} + k]].position;
+        };
+        const glm::vec3 cross = glm::cross(corner(1) - corner(0), corner(2) - corner(0));
+        if (glm::length(cross) <= 0) continue;
+        Reach& reach = reaches[triangle];
+        reach.normal = glm::normalize(cross);
+        for (const auto& place : corners[body]) {
+          const float height = glm::dot(reach.normal, place - corner(0));
+          reach.above = std::max(reach.above, height);
+          reach.below = std::max(reach.below, -height);
+        }
+      }
   }
 }
 
@@ -183,6 +221,12 @@ std::uint32_t RayIndex::occluded(std::uint32_t body, const glm::vec3& offset, co
   for (std::uint32_t i = 0; i < RayPacket::size; ++i)
     if (active[i] != 0 && query.tfar[i] < 0) found |= 1u << i;
   return found;
+}
+
+bool RayIndex::may_meet_own_body(std::uint32_t triangle, const glm::vec3& face) const {
+  const auto& reach = trees_->reaches[triangle];
+  if (reach.normal == glm::vec3(0)) return true;
+  return (glm::dot(reach.normal, face) > 0 ? reach.above : reach.below) > skin_ / 2;
 }
 
 bool RayIndex::contact(std::uint32_t body, const glm::vec3& offset, const glm::vec3& place,

@@ -83,11 +83,11 @@ void LampLight::light(const scene::Offsets& offsets, const Moves& moves) {
     const auto by_lamp = light(lamp, moves);
     for (std::size_t i = 0; i < touched.size(); ++i) touched[i] |= by_lamp[i];
   }
-  for (std::size_t i = 0; i < receivers_.size(); ++i) {
-    if (!touched[i]) continue;
+  for_each_index(0, static_cast<std::uint32_t>(receivers_.size()), receivers_of_a_task, [&](std::uint32_t i) {
+    if (!touched[i]) return;
     irradiance_[i] = glm::vec3(0);
     for (const auto& lamp : lamps_) irradiance_[i] += lamp.arriving[i];
-  }
+  });
 }
 
 std::vector<char> LampLight::light(Lamp& lamp, const Moves& moves) {
@@ -153,7 +153,8 @@ void LampLight::find_own(Lamp& lamp, std::uint32_t receiver) const {
   if (lamp.unshadowed[receiver] != glm::vec3(0) && !contact(receiver, 0) &&
       (record.body == 0 || !contact(receiver, record.body))) {
     bits = trace(lamp, receiver, 0, all_samples);
-    if (record.body != 0) bits = trace(lamp, receiver, record.body, bits);
+    if (record.body != 0 && index_.may_meet_own_body(record.triangle, record.face))
+      bits = trace(lamp, receiver, record.body, bits);
   }
   lamp.own[receiver] = lamp.seen[receiver] = bits;
 }
@@ -179,54 +180,91 @@ LampLight::Bits LampLight::trace(const Lamp& lamp, std::uint32_t receiver, std::
   return left;
 }
 
+// Samples that a body may hide, whichever receivers look at them, so that packets are full.
+class LampLight::Search {
+ public:
+  Search(const LampLight& light, std::uint32_t body, std::vector<Hidden>& found)
+      : light_(light), body_(body), found_(found) {}
+
+  void add(std::uint32_t receiver, std::uint32_t sample, const glm::vec3& place, const glm::vec3& way) {
+    rays_.set(count_, place, way);
+    receiver_[count_] = receiver;
+    sample_[count_] = sample;
+    if (++count_ == packet) trace();
+  }
+
+  void trace() {
+    if (count_ == 0) return;
+    for (std::uint32_t lane = count_; lane < packet; ++lane)  // Embree reads the others, too
+      rays_.set(lane, {rays_.x[0], rays_.y[0], rays_.z[0]}, {rays_.dx[0], rays_.dy[0], rays_.dz[0]});
+    rays_.lanes = (1u << count_) - 1;
+    const std::uint32_t hidden = light_.index_.occluded(body_, light_.offsets_[body_], rays_, short_of_sample);
+    for (std::uint32_t lane = 0; lane < count_; ++lane) {
+      if (!(hidden >> lane & 1)) continue;
+      if (found_.empty() || found_.back().receiver != receiver_[lane]) found_.push_back({receiver_[lane], 0});
+      found_.back().bits |= Bits{1} << sample_[lane];
+    }
+    count_ = 0;
+  }
+
+ private:
+  const LampLight& light_;
+  const std::uint32_t body_;
+  std::vector<Hidden>& found_;
+  scene::RayPacket rays_;
+  std::array<std::uint32_t, packet> receiver_, sample_;
+  std::uint32_t count_ = 0;
+};
+
 std::vector<LampLight::Hidden> LampLight::find_hidden(const Lamp& lamp, std::uint32_t body,
                                                       std::uint32_t of) const {
   const auto& receivers = of_body_[of];
-  const auto& samples = lamp.shape.samples;
-  const scene::Box& rest = scene_.bodies[body].box;
-  const glm::vec3 skin(index_.skin()), low = rest.min + offsets_[body] - skin,
-                                       high = rest.max + offsets_[body] + skin;
-  const glm::vec3 lamp_low = lamp.shape.box.min + offsets_[lamp.shape.body],
-                  lamp_high = lamp.shape.box.max + offsets_[lamp.shape.body];
-  const auto look = [&](std::uint32_t receiver, std::vector<Hidden>& found) {
-    const auto& record = receivers_[receiver];
-    if (lamp.own[receiver] == 0) return;
-    const glm::vec3 place = record.position + offsets_[record.body];
-    if (!may_hide(low, high, place, lamp_low, lamp_high)) return;
-    const bool inside =
-        glm::all(glm::greaterThanEqual(place, low)) && glm::all(glm::lessThanEqual(place, high));
-    if (inside && contact(receiver, body)) {
-      found.push_back({receiver, all_samples});
-      return;
-    }
-    Bits wanted = 0;
-    const glm::vec3 a = low - place, b = high - place, to = offsets_[lamp.shape.body] - place;
-    std::array<std::uint32_t, samples_of_lamp> misses;
-    for (std::uint32_t i = 0; i < samples_of_lamp; ++i) {
-      const float dx = 1 / (samples.x[i] + to.x), dy = 1 / (samples.y[i] + to.y),
-                  dz = 1 / (samples.z[i] + to.z);
-      const float ax = a.x * dx, bx = b.x * dx, ay = a.y * dy, by = b.y * dy, az = a.z * dz, bz = b.z * dz;
-      const float first =
-          std::max(std::max(std::min(ax, bx), std::min(ay, by)), std::max(std::min(az, bz), 0.0f));
-      const float last =
-          std::min(std::min(std::max(ax, bx), std::max(ay, by)), std::min(std::max(az, bz), 1.0f));
-      misses[i] = first > last;
-    }
-    for (std::uint32_t i = 0; i < samples_of_lamp; ++i) wanted |= Bits{!misses[i]} << i;
-    wanted &= lamp.own[receiver];
-    if (wanted == 0) return;
-    if (const Bits hidden = wanted & ~trace(lamp, receiver, body, wanted)) found.push_back({receiver, hidden});
-  };
   const auto count = static_cast<std::uint32_t>(receivers.size());
   std::vector<std::vector<Hidden>> of_task((count + receivers_of_a_task - 1) / receivers_of_a_task);
   for_each_index(0, static_cast<std::uint32_t>(of_task.size()), 1, [&](std::uint32_t task) {
     const auto first = task * receivers_of_a_task;
+    Search search(*this, body, of_task[task]);
     for (auto i = first; i < std::min(first + receivers_of_a_task, count); ++i)
-      look(receivers[i], of_task[task]);
+      find_hidden(lamp, body, receivers[i], search, of_task[task]);
+    search.trace();
   });
   std::vector<Hidden> all;
   for (const auto& some : of_task) all.insert(all.end(), some.begin(), some.end());
   return all;
+}
+
+void LampLight::find_hidden(const Lamp& lamp, std::uint32_t body, std::uint32_t receiver, Search& search,
+                            std::vector<Hidden>& found) const {
+  if (lamp.own[receiver] == 0) return;
+  const auto& record = receivers_[receiver];
+  const auto& samples = lamp.shape.samples;
+  const scene::Box& rest = scene_.bodies[body].box;
+  const glm::vec3 skin(index_.skin()), low = rest.min + offsets_[body] - skin,
+                                       high = rest.max + offsets_[body] + skin;
+  const glm::vec3 surface = record.position + offsets_[record.body],
+                  place = surface + index_.skin() / 2 * record.face;
+  const glm::vec3& lamp_at = offsets_[lamp.shape.body];
+  if (!may_hide(low, high, place, lamp.shape.box.min + lamp_at, lamp.shape.box.max + lamp_at)) return;
+  const bool inside =
+      glm::all(glm::greaterThanEqual(surface, low)) && glm::all(glm::lessThanEqual(surface, high));
+  if (inside && contact(receiver, body)) {
+    search.trace();  // those before it come first
+    found.push_back({receiver, all_samples});
+    return;
+  }
+  const glm::vec3 a = low - place, b = high - place, to = lamp_at - place;
+  std::array<std::uint32_t, samples_of_lamp> misses;
+  for (std::uint32_t i = 0; i < samples_of_lamp; ++i) {
+    const float dx = 1 / (samples.x[i] + to.x), dy = 1 / (samples.y[i] + to.y), dz = 1 / (samples.z[i] + to.z);
+    const float ax = a.x * dx, bx = b.x * dx, ay = a.y * dy, by = b.y * dy, az = a.z * dz, bz = b.z * dz;
+    const float first =
+        std::max(std::max(std::min(ax, bx), std::min(ay, by)), std::max(std::min(az, bz), 0.0f));
+    const float last = std::min(std::min(std::max(ax, bx), std::max(ay, by)), std::min(std::max(az, bz), 1.0f));
+    misses[i] = first > last;
+  }
+  for (std::uint32_t i = 0; i < samples_of_lamp; ++i)
+    if (!misses[i] && (lamp.own[receiver] >> i & 1))
+      search.add(receiver, i, place, glm::vec3(samples.x[i], samples.y[i], samples.z[i]) + to);
 }
 
 glm::vec3 LampLight::arriving(const Lamp& lamp, std::uint32_t receiver) const {

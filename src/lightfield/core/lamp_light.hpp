@@ -49,6 +49,9 @@ class LampLight {
   void find_own(Lamp& lamp, std::uint32_t receiver) const;
   std::vector<Hidden> find_hidden(const Lamp& lamp, std::uint32_t body, std::uint32_t receivers) const;
   glm::vec3 arriving(const Lamp& lamp, std::uint32_t receiver) const;
+  class Search;
+  void find_hidden(const Lamp& lamp, std::uint32_t body, std::uint32_t receiver, Search& search,
+                   std::vector<Hidden>& found) const;
   bool contact(std::uint32_t receiver, std::uint32_t body) const;
   Bits trace(const Lamp& lamp, std::uint32_t receiver, std::uint32_t body, Bits wanted) const;
 

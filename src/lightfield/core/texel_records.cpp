@@ -28,7 +28,8 @@ TexelRecord record_at(const scene::Scene& scene, std::uint32_t size, const scene
   const glm::vec3 w = scene::weights(point);
   const glm::vec3 cross = glm::cross(b.position - a.position, c.position - a.position);
   const glm::vec3 face = glm::length(cross) > 0 ? glm::normalize(cross) : glm::vec3(0);
-  const glm::vec3 normal = w.x * a.normal + w.y * b.normal + w.z * c.normal;
+  // As a difference, so that corners that are alike give all places the same, to the last bit.
+  const glm::vec3 normal = a.normal + w.y * (b.normal - a.normal) + w.z * (c.normal - a.normal);
   const glm::vec3 facing = glm::dot(face, normal) < 0 ? -face : face;
   const float length = glm::length(normal);
   // Metres a texel along the atlas' u and v: the triangle's edges are these times the edges of its chart.

@@ -46,8 +46,8 @@ RayGather::RayGather(const Rows& rows, const RayLinks& links, Direct direct)
       source_(rows.count()) {}
 
 void RayGather::find_sources() {
-  for (std::uint32_t row = 0; row < rows_.count(); ++row)
-    source_[row] = links_.buried(row) ? open_neighbour(row) : row;
+  for_each_index(0, rows_.count(), rows_of_a_task,
+                 [&](std::uint32_t row) { source_[row] = links_.buried(row) ? open_neighbour(row) : row; });
 }
 
 std::uint32_t RayGather::open_neighbour(std::uint32_t row) const {

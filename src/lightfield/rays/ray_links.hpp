@@ -57,11 +57,11 @@ class RayLinks {
   using Covers = std::vector<Cover>;  // ray by ray
 
   void find_own(std::uint32_t body);
-  void find_own(const Range& packet, std::uint32_t body);
+  void find_own(const Rows::Packet& packet, std::uint32_t body);
   std::uint32_t seen(const scene::HitPacket& hits, std::uint32_t lane) const;
   bool contact(std::uint32_t row, std::uint32_t body) const;
   Covers find_covers(std::uint32_t body, std::uint32_t receiver) const;
-  void find_covers(std::uint32_t body, const Range& packet, std::uint32_t receiver, Covers& covers) const;
+  class Search;
   void uncover(const Covers& covers);
   void cover(const Covers& covers, bool anew);
 

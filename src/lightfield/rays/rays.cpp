@@ -5,10 +5,13 @@
 #include <limits>
 
 #include "core/convergence.hpp"
+#include "core/parallel.hpp"
 
 namespace lichtveld::lightfield {
 
 namespace {
+
+constexpr std::uint32_t rows_of_a_task = 1024;
 
 std::uint32_t side_of(std::uint32_t sets) {
   return sets == 16 ? 4 : sets == 4 ? 2 : 1;
@@ -30,6 +33,7 @@ Rays::Rays(const gpu::Device& device, const scene::Scene& scene, const Settings&
       filter_(rows_, links_, side_of(settings.rays.sets)),
       lamps_(*index_, scene, rows_.all()),
       gather_(rows_, links_, settings.direct.value_or(Direct::exact)),
+      averages_(rows_.count()),
       irradiance_(std::size_t{settings.size} * settings.size, glm::vec4(0)) {}
 
 bool Rays::compute(Light before, const Moves& moves, const Enough& enough, Solution& solution) {
@@ -81,14 +85,13 @@ void Rays::count_rays(Solution& solution) const {
 }
 
 void Rays::finish() {
-  std::vector<glm::vec4> averages(rows_.count());
-  filter_.average(gather_.gathered(), averages);
-  for (std::uint32_t row = 0; row < rows_.count(); ++row) {
+  filter_.average(gather_.gathered(), averages_);
+  for_each_index(0, rows_.count(), rows_of_a_task, [&](std::uint32_t row) {
     const auto& record = rows_[row];
-    if (record.atlas == no_atlas_texel) continue;
+    if (record.atlas == no_atlas_texel) return;
     irradiance_[record.atlas] =
-        glm::vec4(glm::max(glm::vec3(averages[row]), 0.0f) + lamps_.irradiance()[row], 1);
-  }
+        glm::vec4(glm::max(glm::vec3(averages_[row]), 0.0f) + lamps_.irradiance()[row], 1);
+  });
 }
 
 double Rays::error_estimate() const {

@@ -45,6 +45,7 @@ class Rays final : public LightField {
   BlockFilter filter_;
   LampLight lamps_;
   RayGather gather_;
+  std::vector<glm::vec4> averages_;    // what rows have gathered, over their blocks [W m^-2]
   std::vector<glm::vec4> irradiance_;  // of the atlas
   std::optional<Presenter> presenter_;
 };

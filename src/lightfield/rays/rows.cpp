@@ -7,14 +7,17 @@
 #include <numeric>
 #include <tuple>
 
+#include "core/parallel.hpp"
+
 namespace lichtveld::lightfield {
 
 namespace {
 
-// Atlas texels a side of a tile whose rows stand together: with sets in blocks of 4 x 4, 16 of a tile's texels
-// have the same.
-constexpr std::uint32_t tile = 16;
+// Atlas texels a side of a tile whose rows stand together, set by set: with blocks of 4 x 4, up to 256 have the
+// same.
+constexpr std::uint32_t tile = 64;
 constexpr std::uint32_t packet = 16;
+constexpr std::uint32_t packets_of_a_task = 64;
 
 // Places are moved this far towards the middle of their triangle: rays that start on an edge shared with a wall
 // could, by rounding, start behind that wall [radii of the scene].
@@ -24,6 +27,8 @@ constexpr float inset = 2e-6f;
 constexpr float alike_cosine = 0.7f;
 // Texels whose faces or normals are turned by more are on other sides of a crease.
 constexpr float crease_cosine = 0.95f;
+// Faces of one plane's triangles differ by rounding alone.
+constexpr float same_face_apart = 1e-6f;
 // A texel's plane ends this share of the way to its neighbour above or below it.
 constexpr float plane_share = 0.1f;
 constexpr int reach = 2;  // texels beyond its chart's rim that a point may lie
@@ -38,6 +43,14 @@ std::uint32_t facing(const glm::vec3& face) {
 // Places of the same key are on one surface and look roughly the same way.
 std::uint32_t face_key(std::uint32_t surface, const glm::vec3& face) {
   return surface * 6 + facing(face);
+}
+
+// The bits of both, in turn: what is near in this order is near both ways (Morton 1966).
+std::uint32_t interleaved(std::uint32_t x, std::uint32_t y) {
+  std::uint32_t code = 0;
+  for (std::uint32_t bit = 0; bit < 16; ++bit)
+    code |= (x >> bit & 1) << (2 * bit) | (y >> bit & 1) << (2 * bit + 1);
+  return code;
 }
 
 }  // namespace
@@ -124,7 +137,7 @@ void Rows::add_backs(const scene::Scene& scene) {
 void Rows::sort(std::size_t bodies, std::uint32_t side) {
   // What keeps packets apart comes first; the row, which follows all else, last.
   using Key = std::array<std::uint32_t, 8>;
-  constexpr std::size_t kept_apart = 5;  // of them
+  constexpr std::size_t kept_apart = 6;  // of them
   const std::uint32_t tiles = (size_ + tile - 1) / tile;
   std::vector<std::uint32_t> texel(rows_.size()), front(rows_.size());
   std::iota(front.begin(), front.end(), 0u);
@@ -140,8 +153,8 @@ void Rows::sort(std::size_t bodies, std::uint32_t side) {
     const std::uint32_t x = has_texel ? atlas % size_ : 0, y = has_texel ? atlas / size_ : 0;
     texel[row] = has_texel ? (y % side) * side + x % side : row % (side * side);
     keys.push_back({record.body, has_texel ? y / tile * tiles + x / tile : tiles * tiles, record.surface,
-                    facing(record.face), record.atlas != no_atlas_texel ? 0u : 1u, texel[row], y * size_ + x,
-                    row});
+                    facing(record.face), record.atlas != no_atlas_texel ? 0u : 1u, texel[row],
+                    interleaved(x / side, y / side), row});
   }
   std::ranges::sort(keys,
                     [](const Key& a, const Key& b) { return std::ranges::lexicographical_compare(a, b); });
@@ -159,7 +172,7 @@ void Rows::sort(std::size_t bodies, std::uint32_t side) {
       const auto next = static_cast<std::uint32_t>(packets_.size());
       packets_of_body_[body] = {next, next};
     }
-    if (!alike || packets_.back().size() == packet) packets_.push_back({row, row});
+    if (!alike || packets_.back().size() == packet) packets_.push_back({{row, row}});
     packets_.back().end = bodies_[body].end = row + 1;
     packets_of_body_[body].end = static_cast<std::uint32_t>(packets_.size());
     moved_to[key[7]] = row;
@@ -170,10 +183,23 @@ void Rows::sort(std::size_t bodies, std::uint32_t side) {
   for (std::uint32_t row = 0; row < rows_.size(); ++row) back[moved_to[row]] = moved_to[back_[row]];
   back_ = std::move(back);
   rows_ = std::move(sorted);
+  for_each_index(0, static_cast<std::uint32_t>(packets_.size()), packets_of_a_task,
+                 [&](std::uint32_t packet) { describe(packets_[packet]); });
   for (auto& cell : at_)
     if (cell.row != no_row) cell.row = moved_to[cell.row];
   for (auto& triangle : triangles_)
     if (triangle.fallback != no_row) triangle.fallback = moved_to[triangle.fallback];
+}
+
+void Rows::describe(Packet& packet) const {
+  packet.box = {rows_[packet.first].position, rows_[packet.first].position};
+  for (std::uint32_t row = packet.first; row < packet.end; ++row) {
+    packet.box.min = glm::min(packet.box.min, rows_[row].position);
+    packet.box.max = glm::max(packet.box.max, rows_[row].position);
+    packet.alike = packet.alike && rows_[row].normal == rows_[packet.first].normal &&
+                   glm::distance(rows_[row].face, rows_[packet.first].face) < same_face_apart &&
+                   sets_[row] == sets_[packet.first];
+  }
 }
 
 std::uint32_t Rows::find(const Triangle& triangle, const glm::vec2& barycentric) const {

@@ -1,6 +1,6 @@
 // Who receives and sends light here: the texels, the backs of double-sided ones, and a place for each chart
-// that is too small to hold a texel. Each has a number, its row in the table of links; 16 that follow each
-// other lie together, look the same way and, on a chart that is large enough, along the same directions.
+// that is too small to hold a texel. Each has a number, its row in the table of links; up to 16 that follow
+// each other lie together, and on a flat chart look along the same directions.
 #pragma once
 
 #include <algorithm>
@@ -30,7 +30,11 @@ class Rows {
   std::uint32_t bodies() const { return static_cast<std::uint32_t>(bodies_.size()); }
 
   // Rows whose rays are followed together: up to 16 of one body each.
-  std::span<const Range> packets() const { return packets_; }
+  struct Packet : Range {
+    scene::Box box = {};  // around their places, bodies at rest [m]
+    bool alike = true;    // they look along the same directions, and their faces are of one plane
+  };
+  std::span<const Packet> packets() const { return packets_; }
   Range packets_of_body(std::uint32_t body) const { return packets_of_body_[body]; }
 
   // The row of an atlas texel; no_row for what is none.
@@ -73,13 +77,15 @@ class Rows {
   void add_fallbacks(const scene::Scene& scene);
   void add_backs(const scene::Scene& scene);
   void sort(std::size_t bodies, std::uint32_t side);
+  void describe(Packet& packet) const;
 
   std::uint32_t size_;
   std::vector<TexelRecord> rows_;
   std::vector<Cell> at_;
   std::vector<std::uint32_t> back_;  // of each row: that of its back, or itself
   std::vector<std::uint32_t> sets_;
-  std::vector<Range> bodies_, packets_, packets_of_body_;
+  std::vector<Packet> packets_;
+  std::vector<Range> bodies_, packets_of_body_;
   std::vector<Triangle> triangles_;
 };
 

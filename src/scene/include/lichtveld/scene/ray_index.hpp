@@ -57,8 +57,12 @@ class RayIndex {
   // A bit for each ray that meets the body within `reach` lengths of its direction.
   std::uint32_t occluded(std::uint32_t body, const glm::vec3& offset, const RayPacket& rays, float reach) const;
 
-  // Whether a surface of that body lies on the place and looks at it, so that nothing else can be seen from there.
-  // Place and face (unit) are of that triangle, which is not found itself.
+  // Whether anything of a triangle's own body may lie above it, on the side that `face` (unit) looks to: if
+  // not, no ray that leaves it there meets that body. Of boxes and what else is convex nothing does.
+  bool may_meet_own_body(std::uint32_t triangle, const glm::vec3& face) const;
+
+  // Whether a surface of that body lies on the place and looks at it, so that nothing else can be seen from
+  // there. Place and face (unit) are of that triangle, which is not found itself.
   bool contact(std::uint32_t body, const glm::vec3& offset, const glm::vec3& place, const glm::vec3& face,
                std::uint32_t triangle) const;
 
