@@ -52,6 +52,7 @@ const std::vector<OptionOfMethods> options_of_methods = {
     {"--direct", {"thesis", "links", "rays"}},
     {"--psf", {"thesis", "links", "rays"}},
     {"--error", {"thesis", "links", "rays"}},
+    {"--memory", {"links", "rays"}},
     {"--live", {"thesis", "links", "rays"}},
     {"--spp", {reference_method}},
 };
@@ -159,6 +160,12 @@ void add_light_field_options(CLI::App& command, lightfield::Settings& settings) 
                   "look along the "
                   "same ones")
       ->capture_default_str();
+  command
+      .add_option("--memory", settings.memory,
+                  "What links may take, as 500M or 2G; more is refused before it is taken")
+      ->transform(CLI::AsSizeValue(false))
+      ->type_name("SIZE")
+      ->default_str("three quarters of what is free");
   command
       .add_option_function<std::string>(
           "--direct",

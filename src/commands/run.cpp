@@ -37,6 +37,9 @@ int parse_and_run(CLI::App& application, int argc, char** argv) {
   } catch (const gpu::NoDevice& error) {
     spdlog::error("{}", error.what());
     return no_device;
+  } catch (const std::bad_alloc&) {
+    spdlog::error("out of memory; try a smaller --size or --psf, or a simpler scene");
+    return failed;
   } catch (const std::exception& error) {
     spdlog::error("{}", error.what());
     return failed;

@@ -198,6 +198,22 @@ TEST(Links, ThatDoNotFitAreRefusedBeforeTheyAreMade) {
   EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }
 
+// With 2 GB of address space.
+TEST(Bakes, WithoutMemoryAreRefusedWithAdvice) {
+  const TempFolder folder;
+  const auto out = (folder.path() / "E.exr").string();
+  const auto bake = [&](const std::string& options) {
+    return shell("ulimit -v 2097152; timeout 60 " LICHTVELD_BINARY " bake " + cornell + " --out " + out +
+                 options + " 2>&1");
+  };
+  const auto large = bake(" --size 1024 --psf 1536");
+  EXPECT_EQ(large.status, 1);
+  EXPECT_THAT(large.output, AllOf(HasSubstr("MiB"), HasSubstr("--size")));
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+  EXPECT_EQ(bake(" --size 128").status, 0);
+  EXPECT_EQ(run("bake " + cornell + " --memory 1M --size 64 --out " + out).status, 1);
+}
+
 TEST_F(Bake, LiveMovesEndWhereAFreshBakeDoes) {
   const std::string moves = "--move cube1=-0.4,0.3,0 --move cube2=0.2,0,0.1 --move cube1=0.1,0,0";
   for (const std::string method : {"rays", "links"}) {

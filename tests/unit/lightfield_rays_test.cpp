@@ -180,6 +180,39 @@ TEST_F(RaysMethod, AfterAnyMovesAllIsAsIfItHadStartedThere) {
   EXPECT_EQ(rays->irradiance(), fresh(scene, settings));
 }
 
+// Wherever it is put down: the first place of a packet of rays may be one of those, or none.
+TEST_F(RaysMethod, ItIsDarkUnderABody) {
+  const auto scene = lamp_room(1);
+  const Settings settings{.size = 256, .psf = 24, .bounces = 2};
+  const auto rays = make_light_field("rays", device(), scene, settings);
+  auto offsets = at_rest(scene);
+  settled(*rays, offsets);
+  for (const float x : {0.0f, -0.11f, -0.53f, 0.37f}) {
+    offsets[1] = {x, 0, x / 2};
+    settled(*rays, offsets);
+    const auto box = scene.bodies[1].box;
+    int under = 0, beside = 0;
+    for (const auto& texel : texels(scene, settings.size, rays->irradiance(), {})) {
+      const auto& place = texel.position;
+      if (texel.node != "room" || place.y > 1e-4) continue;
+      const auto inside = [&](double by) {
+        return place.x > box.min.x + x + by && place.x < box.max.x + x - by &&
+               place.z > box.min.z + x / 2 + by && place.z < box.max.z + x / 2 - by;
+      };
+      const double seen = texel.irradiance.g;
+      if (inside(1e-3)) {
+        ASSERT_EQ(seen, 0) << "at " << place.x << ", " << place.z;
+        ++under;
+      } else if (!inside(-1e-3) && inside(-0.1)) {
+        ASSERT_GT(seen, 0) << "at " << place.x << ", " << place.z;
+        ++beside;
+      }
+    }
+    EXPECT_GT(under, 40);
+    EXPECT_GT(beside, 10);
+  }
+}
+
 TEST_F(RaysMethod, ALampThatMovesTakesItsLightAlong) {
   SceneBuilder builder;
   builder.box("room", {-2, 0, -2}, {2, 3, 2}, {0, 0, 1, 0.5f}, builder.material(glm::vec3(0.5f)), true);
@@ -269,6 +302,23 @@ TEST_F(RaysMethod, RadianceOfAnyMagnitudeScales) {
   };
   EXPECT_NEAR(at(1e-6f) / at(1), 1, 1e-5);
   EXPECT_NEAR(at(1e6f) / at(1), 1, 1e-5);
+}
+
+TEST_F(RaysMethod, WhatDoesNotFitIsRefusedBeforeItIsTaken) {
+  const auto scene = cornell();
+  const auto message = [&](const Settings& settings) -> std::string {
+    try {
+      make_light_field("rays", device(), scene, settings);
+    } catch (const std::runtime_error& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(message({.size = 64, .psf = 24}), "");
+  const auto allowed = message({.size = 64, .psf = 384, .memory = 1 << 20});
+  EXPECT_NE(allowed.find("1 MiB are what --memory allows; try a smaller --size"), std::string::npos) << allowed;
+  const auto free = message({.size = 4096, .psf = 6144});
+  EXPECT_NE(free.find("of what is free"), std::string::npos) << free;
 }
 
 TEST_F(RaysMethod, TheSameBitsOnEachRun) {

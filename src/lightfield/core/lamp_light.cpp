@@ -12,8 +12,6 @@ namespace lichtveld::lightfield {
 namespace {
 
 constexpr std::uint32_t packet = scene::RayPacket::size;
-// More are taken together by where they lie: each costs a word and a closed form a receiver.
-constexpr std::size_t most_lamps = 64;
 // Where all lamps together have more patches, those of more than a few are the sum over their samples: in
 // closed form it would take too long.
 constexpr std::size_t most_patches = 1024, few_patches = 16;

@@ -20,6 +20,10 @@ namespace lichtveld::lightfield {
 
 class LampLight {
  public:
+  // More are taken together by where they lie: each costs so many bytes and a closed form a receiver.
+  static constexpr std::size_t most_lamps = 64;
+  static constexpr std::uint64_t bytes_a_lamp = 40;  // two irradiances, two masks
+
   // All of these must outlive it. `receivers`: where light arrives.
   LampLight(const scene::RayIndex& index, const scene::Scene& scene, std::span<const TexelRecord> receivers);
 

@@ -59,7 +59,7 @@ KeptLinks::KeptLinks(const gpu::Device& device, const scene::Scene& scene, const
       counters_(device, "lightfield/counters", sizeof(shaders::Counters),
                 vk::BufferUsageFlagBits::eStorageBuffer, gpu::Memory::host),
       directions_(upload_directions(device, set_.pairs())),
-      table_(device, records_, static_cast<std::uint32_t>(set_.pairs().size())),
+      table_(device, records_, static_cast<std::uint32_t>(set_.pairs().size()), settings.memory),
       direct_(device, scene, table_, settings.direct.value_or(Direct::exact)),
       capacity_(capacity_for(settings.layers)) {
   layered();

@@ -4,6 +4,7 @@
 #include <bit>
 #include <limits>
 
+#include "core/memory.hpp"
 #include "lichtveld/gpu/transfer.hpp"
 
 namespace lichtveld::lightfield {
@@ -50,7 +51,8 @@ struct Bounds {
 
 }  // namespace
 
-LinkTable::LinkTable(const gpu::Device& device, const TexelRecords& records, std::uint32_t pairs)
+LinkTable::LinkTable(const gpu::Device& device, const TexelRecords& records, std::uint32_t pairs,
+                     std::uint64_t most_bytes)
     : records(records),
       texels(records.count()),
       pairs(pairs),
@@ -61,6 +63,10 @@ LinkTable::LinkTable(const gpu::Device& device, const TexelRecords& records, std
   bits = texels + 1 <= std::numeric_limits<std::uint16_t>::max() && device.summary().storage_16_bit ? 16 : 32;
 
   const std::uint64_t a_pair = bytes_of(1), all = bytes_of(pairs);
+  if (most_bytes > 0)
+    require_memory(
+        "the links of " + std::to_string(texels) + " texels in " + std::to_string(2 * pairs) + " directions",
+        all, most_bytes, "try a smaller --size or --psf, or --method thesis, which keeps none");
   const auto memory = device.summary().memory;
   if (static_cast<double>(all) > most_of_memory * static_cast<double>(memory))
     throw std::runtime_error("the links of " + std::to_string(texels) + " texels in " +

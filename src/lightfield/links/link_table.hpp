@@ -25,8 +25,10 @@ struct TileBoxes {
 };
 
 struct LinkTable {
-  // The records must outlive it. Throws std::runtime_error if the links would take more than the device has.
-  LinkTable(const gpu::Device& device, const TexelRecords& records, std::uint32_t pairs);
+  // The records must outlive it. Throws std::runtime_error if the links would take more than the device has, or
+  // than `most_bytes`, if that is above 0.
+  LinkTable(const gpu::Device& device, const TexelRecords& records, std::uint32_t pairs,
+            std::uint64_t most_bytes);
 
   // Links of consecutive pairs, an even number, as many as one buffer may hold; word_at (links.glsl) says
   // where.

@@ -16,6 +16,8 @@ namespace lichtveld::lightfield {
 
 class BlockFilter {
  public:
+  static constexpr std::uint64_t bytes_a_row = 204;  // most_taps of a row and a weight each, and their number
+
   // All of these must outlive it. `side`: texels a side of a block; 1 averages nothing.
   BlockFilter(const Rows& rows, const RayLinks& links, std::uint32_t side);
 

@@ -17,6 +17,8 @@ namespace lichtveld::lightfield {
 
 class RayLinks {
  public:
+  static constexpr std::uint64_t bytes_a_ray = 16;  // two rows, two distances
+
   // All of these must outlive it.
   RayLinks(const scene::RayIndex& index, const scene::Scene& scene, const Rows& rows, const RaySets& sets);
 

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/convergence.hpp"
+#include "core/memory.hpp"
 #include "core/parallel.hpp"
 
 namespace lichtveld::lightfield {
@@ -28,6 +29,7 @@ Rays::Rays(const gpu::Device& device, const scene::Scene& scene, const Settings&
       records_(device.times().time("texel_records", [&] { return TexelRecords(scene, settings.size); })),
       index_(device.times().time("ray_index", [&] { return std::make_unique<scene::RayIndex>(scene); })),
       rows_(device.times().time("rows", [&] { return Rows(scene, records_, side_of(settings.rays.sets)); })),
+      memory_(device.ledger(), "lightfield/rays", bytes()),
       sets_(settings.psf / 2, settings.rays.sets, settings.seed),
       links_(*index_, scene, rows_, sets_),
       filter_(rows_, links_, side_of(settings.rays.sets)),
@@ -35,6 +37,19 @@ Rays::Rays(const gpu::Device& device, const scene::Scene& scene, const Settings&
       gather_(rows_, links_, settings.direct.value_or(Direct::exact)),
       averages_(rows_.count()),
       irradiance_(std::size_t{settings.size} * settings.size, glm::vec4(0)) {}
+
+// Of what is kept a row. Throws std::runtime_error if it is too much.
+std::uint64_t Rays::bytes() const {
+  const std::uint64_t lamps = find_area_lamps(scene_, LampLight::most_lamps).size();
+  const std::uint64_t a_row =
+      settings_.psf / 2 * RayLinks::bytes_a_ray + BlockFilter::bytes_a_row + lamps * LampLight::bytes_a_lamp;
+  const auto all = rows_.count() * a_row;
+  require_memory("what " + std::to_string(rows_.count()) + " places see in " +
+                     std::to_string(settings_.psf / 2) + " directions each, and their " +
+                     std::to_string(lamps) + " lamps,",
+                 all, settings_.memory, "try a smaller --size or --psf, or a larger --memory");
+  return all;
+}
 
 bool Rays::compute(Light before, const Moves& moves, const Enough& enough, Solution& solution) {
   auto& times = device_.times();

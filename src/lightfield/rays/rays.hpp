@@ -4,6 +4,7 @@
 #pragma once
 
 #include "core/lamp_light.hpp"
+#include "lichtveld/gpu/resources.hpp"
 #include "lichtveld/lightfield/light_field.hpp"
 #include "lichtveld/lightfield/settings.hpp"
 #include "lichtveld/scene/ray_index.hpp"
@@ -28,6 +29,7 @@ class Rays final : public LightField {
   bool compute(Light before, const Moves& moves, const Enough& enough, Solution& solution) override;
   double error_estimate() const override;
 
+  std::uint64_t bytes() const;
   bool converge(Light before, const Enough& enough, Solution& solution);
   void bounce(Solution& solution);
   void count_rays(Solution& solution) const;
@@ -40,6 +42,7 @@ class Rays final : public LightField {
   const TexelRecords records_;
   const std::unique_ptr<const scene::RayIndex> index_;
   const Rows rows_;
+  const gpu::LedgerEntry memory_;  // of all that follows; before any of it is taken
   const RaySets sets_;
   RayLinks links_;
   BlockFilter filter_;

@@ -44,7 +44,8 @@ std::vector<DeviceSummary> list_devices();
 // The one that Device would take for DeviceOptions::device. Throws NoDevice as it does.
 DeviceSummary chosen_device(const std::string& wanted);
 
-// How much device memory each living buffer and image holds, by name.
+// How much memory each living buffer and image of the device holds, by name, and what the host keeps of that
+// size.
 class MemoryLedger {
  public:
   void add(const std::string& name, std::uint64_t bytes);

@@ -70,6 +70,7 @@ struct Settings {
   ThesisSettings thesis = {};
   LinksSettings links = {};
   RaysSettings rays = {};
+  std::uint64_t memory = 0;           // bytes that links may take; 0: most of what is free
   std::optional<Direct> direct = {};  // empty: exact, but of `thesis` as published
 
   std::uint32_t raster() const { return psf_size > 0 ? psf_size : size; }  // of a PSF [pixels a side]
