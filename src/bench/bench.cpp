@@ -11,6 +11,7 @@
 #include "lichtveld/scene/atlas.hpp"
 #include "pass_table.hpp"
 #include "plots.hpp"
+#include "scale.hpp"
 #include "updates.hpp"
 
 namespace lichtveld::bench {
@@ -90,6 +91,12 @@ void Bench::run(const gpu::Device& device) const {
   const fs::path out = options_.out;
   const ReferenceCache cache(options_.reference_cache);
   std::printf("%s\n", device.summary().name.c_str());
+  if (options_.scale) {
+    const auto rows = time_scale(device, options_.sweep.sizes.back());
+    files::write_text(out / "scale.csv", scale_csv(rows));
+    std::printf("%s", scale_text(rows).c_str());
+    return;
+  }
 
   SweepResult result;
   for (const auto& [name, scene] : scenes_) append(result, sweep(device, scene, name, options_.sweep, cache));

@@ -16,6 +16,7 @@ namespace lichtveld::bench {
 inline constexpr const char* reference_method = "reference";
 inline constexpr const char* thesis_method = "thesis";
 inline constexpr const char* links_method = "links";
+inline constexpr const char* rays_method = "rays";
 
 constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
 

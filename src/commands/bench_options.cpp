@@ -111,6 +111,10 @@ void add_bench_options(CLI::App& command, BenchOptions& options) {
       ->capture_default_str()
       ->type_name("DIR");
   command.add_flag("--quick", options.quick, "Fewer and smaller light maps: two minutes on two cores");
+  command.add_flag(
+      "--scale", options.bench.scale,
+      "Instead: what rays cost in rooms of 1,000 to 1,000,000 triangles, on one core and on all, at the "
+      "last --size");
   add_counts(command, "--size", sweep.sizes, usual.sizes, quick.sizes, "Texels a side, 16..4096");
   add_counts(command, "--psf", sweep.psfs, usual.psfs, quick.psfs,
              "Directions: " + lightfield::direction_counts_text());

@@ -192,6 +192,19 @@ TEST_F(Bench, AReferenceIsTracedOnceAndADamagedOneAnew) {
   }
 }
 
+TEST_F(Bench, ScaleTellsWhatTrianglesAndCoresCost) {
+  EXPECT_THAT(bench("--scale --size 32").output, HasSubstr("1000000 triangles"));
+  EXPECT_EQ(header_of(out() / "scale.csv"),
+            "triangles,cores,load_ms,first_ms,cube_step_ms,ball_step_ms,resident_mib");
+  const auto lines = table(out() / "scale.csv");
+  ASSERT_EQ(lines.size() % 4, 0u) << "rooms, each on one core and on all";
+  EXPECT_EQ(lines.front().at("triangles"), "1000");
+  EXPECT_EQ(lines.back().at("triangles"), "1000000");
+  for (const auto& line : lines)
+    for (const char* time : {"load_ms", "first_ms", "cube_step_ms", "ball_step_ms"})
+      EXPECT_GT(number(line, time), 0);
+}
+
 TEST(BenchOddities, ADarkRoomWithoutBodiesAndWithoutGnuplotIsTimedAlone) {
   const TempFolder folder;
   SceneBuilder builder;

@@ -35,6 +35,7 @@ struct Options {
   std::string reference_cache;             // default_reference_cache(), unless it is named
   std::uint32_t updates = 60;              // steps of the walks
   std::vector<std::uint32_t> update_psfs;  // those of the walks
+  bool scale = false;  // instead of all that: by triangles and cores, in rooms of its own
   SweepOptions sweep;
 };
 
