@@ -80,7 +80,7 @@ void write_charts(const SweepResult& result, const fs::path& out) {
 
 Bench::Bench(Options options) : options_(std::move(options)) {
   check_all(options_);
-  for (const auto& file : options_.scenes) {
+  for (const auto& file : options_.scale ? std::vector<std::string>() : options_.scenes) {
     scenes_.push_back({fs::path(file).stem().string(), scene::load(file)});
     for (const auto size : options_.sweep.sizes) scene::check_atlas(scenes_.back().scene, size);
   }

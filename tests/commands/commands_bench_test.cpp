@@ -193,11 +193,14 @@ TEST_F(Bench, AReferenceIsTracedOnceAndADamagedOneAnew) {
 }
 
 TEST_F(Bench, ScaleTellsWhatTrianglesAndCoresCost) {
-  EXPECT_THAT(bench("--scale --size 32").output, HasSubstr("1000000 triangles"));
+  const auto ran = bench("--scale --size 32");
+  ASSERT_EQ(ran.status, 0) << ran.output;
+  EXPECT_THAT(ran.output, HasSubstr("1000000 triangles"));
   EXPECT_EQ(header_of(out() / "scale.csv"),
             "triangles,cores,load_ms,first_ms,cube_step_ms,ball_step_ms,resident_mib");
   const auto lines = table(out() / "scale.csv");
-  ASSERT_EQ(lines.size() % 4, 0u) << "rooms, each on one core and on all";
+  ASSERT_FALSE(lines.empty());
+  EXPECT_EQ(lines.size() % 4, 0u) << "rooms, each on one core and on all";
   EXPECT_EQ(lines.front().at("triangles"), "1000");
   EXPECT_EQ(lines.back().at("triangles"), "1000000");
   for (const auto& line : lines)
