@@ -48,11 +48,11 @@ const fs::path& pictures_of(const std::string& bake) {
   out = fs::path(LICHTVELD_PICTURES) / bake;
   fs::remove_all(out);
   fs::create_directories(out);
-  const std::string options = read_list()["bakes"][bake]["options"];
-  const std::string command = std::string(LICHTVELD_BINARY) +
-                              " bake " LICHTVELD_SOURCE_DIR "/assets/cornell.glb " + options +
-                              " --validation --out " + (out / "irradiance.exr").string() + " --png " +
-                              (out / "map.png").string() + " --dump " + out.string();
+  std::string options = read_list()["bakes"][bake]["options"];
+  if (const auto at = options.find("OUT"); at != std::string::npos) options.replace(at, 3, out.string());
+  const std::string command =
+      std::string(LICHTVELD_BINARY) + " bake " LICHTVELD_SOURCE_DIR "/assets/cornell.glb " + options +
+      " --validation --out " + (out / "irradiance.exr").string() + " --png " + (out / "map.png").string();
   EXPECT_EQ(std::system(command.c_str()), 0) << command;
   return out;
 }

@@ -87,7 +87,7 @@ double true_error(const std::vector<glm::vec4>& map, const std::vector<glm::vec4
 
 class ErrorEstimate : public WithDevice, public ::testing::WithParamInterface<EstimatedScene> {};
 
-TEST_P(ErrorEstimate, IsWithinAFactorOfOneAndAHalf) {
+TEST_P(ErrorEstimate, IsAboutTheError) {
   constexpr std::uint32_t size = 64, bounces = 3;
   const auto scene = GetParam().load();
   auto offsets = GetParam().offsets;
@@ -97,20 +97,24 @@ TEST_P(ErrorEstimate, IsWithinAFactorOfOneAndAHalf) {
         .texels;
   };
   const auto one = traced(1), other = traced(2);
-  for (const std::uint32_t psf : {24u, 96u, 384u}) {
-    const auto thesis = lightfield::make_light_field(
-        "thesis", device(), scene,
+  const auto compare = [&](const char* method, std::uint32_t psf, double factor) {
+    const auto light = lightfield::make_light_field(
+        method, device(), scene,
         {.size = size,
          .psf = psf,
          .bounces = bounces,
          .thesis = {.abuffer = lightfield::ABuffer::list, .sort = lightfield::Sort::scan}});
-    const double estimate = settled(*thesis, offsets).error_estimate,
-                 error = true_error(thesis->irradiance(), one, other);
-    std::printf("%-18s %4u PSFs: estimate %6.2f %%, true %6.2f %%, ratio %.2f\n", GetParam().name.c_str(), psf,
-                100 * estimate, 100 * error, estimate / error);
-    EXPECT_LT(estimate / error, 1.5) << psf;
-    EXPECT_GT(estimate / error, 1 / 1.5) << psf;
-  }
+    const double estimate = settled(*light, offsets).error_estimate,
+                 error = true_error(light->irradiance(), one, other);
+    std::printf("%-18s %-6s %4u PSFs: estimate %6.2f %%, true %6.2f %%, ratio %.2f\n", GetParam().name.c_str(),
+                method, psf, 100 * estimate, 100 * error, estimate / error);
+    EXPECT_LT(estimate / error, factor) << method << " " << psf;
+    EXPECT_GT(estimate / error, 1 / factor) << method << " " << psf;
+  };
+  for (const std::uint32_t psf : {24u, 96u, 384u}) compare("thesis", psf, 1.5);
+  // Of so small an error the reference's noise is a part that two of them do not cancel. What halves of a
+  // lattice differ by is more than what both are off.
+  compare("rays", 24, 2.5);
 }
 
 INSTANTIATE_TEST_SUITE_P(

@@ -267,23 +267,38 @@ void LampLight::find_hidden(const Lamp& lamp, std::uint32_t body, std::uint32_t 
 
 glm::vec3 LampLight::arriving(const Lamp& lamp, std::uint32_t receiver) const {
   const glm::vec3& unshadowed = lamp.unshadowed[receiver];
-  if (unshadowed == glm::vec3(0)) return glm::vec3(0);
+  const Bits seen = lamp.seen[receiver];
+  if (unshadowed == glm::vec3(0) || seen == 0) return glm::vec3(0);
+  return seen == all_samples ? unshadowed : unshadowed * share_seen(lamp, receiver, all_samples);
+}
+
+// Of some samples, by what each would bring.
+float LampLight::share_seen(const Lamp& lamp, std::uint32_t receiver, Bits some) const {
   const auto& record = receivers_[receiver];
   const auto& samples = lamp.shape.samples;
-  const Bits seen = lamp.seen[receiver];
-  if (seen == 0) return glm::vec3(0);
-  if (seen == all_samples) return unshadowed;
+  const Bits seen = lamp.seen[receiver] & some;
   const glm::vec3 to = offsets_[lamp.shape.body] - (record.position + offsets_[record.body]);
   float all = 0, visible = 0;
   for (std::uint32_t i = 0; i < samples_of_lamp; ++i) {
-    const float weight = weight_of(samples, i, to, record);
+    const float weight = (some >> i & 1) ? weight_of(samples, i, to, record) : 0.0f;
     all += weight;
     visible += (seen >> i & 1) ? weight : 0.0f;
   }
   // Where no sample shines here, a sliver of the lamp may still.
-  const float share =
-      all > 0 ? visible / all : static_cast<float>(std::popcount(seen)) / static_cast<float>(samples_of_lamp);
-  return unshadowed * share;
+  return all > 0 ? visible / all
+                 : static_cast<float>(std::popcount(seen)) / static_cast<float>(std::popcount(some));
+}
+
+glm::vec3 LampLight::half_difference(std::uint32_t receiver) const {
+  constexpr Bits even = 0x5555555555555555;
+  glm::vec3 sum(0);
+  for (const auto& lamp : lamps_) {
+    const Bits seen = lamp.seen[receiver];
+    if (seen == 0 || seen == all_samples || lamp.unshadowed[receiver] == glm::vec3(0)) continue;
+    sum += lamp.unshadowed[receiver] * (share_seen(lamp, receiver, even) - share_seen(lamp, receiver, ~even)) /
+           2.0f;
+  }
+  return sum;
 }
 
 }  // namespace lichtveld::lightfield

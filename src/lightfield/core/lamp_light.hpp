@@ -32,6 +32,8 @@ class LampLight {
 
   // E [W m^-2] of each receiver.
   const std::vector<glm::vec3>& irradiance() const { return irradiance_; }
+  // By how much each half of the sample points differs from both: for split_half_error [W m^-2], signed.
+  glm::vec3 half_difference(std::uint32_t receiver) const;
 
  private:
   using Bits = std::uint64_t;  // a sample each
@@ -53,6 +55,7 @@ class LampLight {
   void find_own(Lamp& lamp, std::uint32_t receiver) const;
   std::vector<Hidden> find_hidden(const Lamp& lamp, std::uint32_t body, std::uint32_t receivers) const;
   glm::vec3 arriving(const Lamp& lamp, std::uint32_t receiver) const;
+  float share_seen(const Lamp& lamp, std::uint32_t receiver, Bits some) const;
   class Search;
   void find_hidden(const Lamp& lamp, std::uint32_t body, std::uint32_t receiver, Search& search,
                    std::vector<Hidden>& found) const;

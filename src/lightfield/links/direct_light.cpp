@@ -56,6 +56,12 @@ void DirectLight::light(const scene::Offsets& offsets, const Moves& moves) {
     irradiance[texel] = glm::vec4(exact_->irradiance()[texel], 0);
 }
 
+void DirectLight::add_half_difference(std::span<glm::vec4> atlas) const {
+  if (!exact_) return;
+  for (std::uint32_t texel = 0; texel < records_.count(); ++texel)
+    atlas[records_[texel].atlas] += glm::vec4(exact_->half_difference(texel), 0);
+}
+
 void DirectLight::sum(gpu::Frame& frame, const LightMap& map, const LinkTable& table,
                       const gpu::Buffer& directions) const {
   frame.clear("direct_light", sums_);

@@ -7,6 +7,7 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 
 #include "core/lamp_light.hpp"
 #include "lichtveld/gpu/frame.hpp"
@@ -33,6 +34,8 @@ class DirectLight {
   std::uint32_t left_out() const { return is_exact() ? records_.count() : linked_lamps(); }
   // vec4 a texel: E straight from lamps, if it is exact [W m^-2]; 0 otherwise.
   const gpu::Buffer& irradiance() const { return irradiance_; }
+  // Of exact light, that of each texel of the atlas: LampLight::half_difference.
+  void add_half_difference(std::span<glm::vec4> atlas) const;
   float scale() const { return scale_; }               // of the sums: w Le [W m^-2] times this
   const gpu::Buffer& lamps() const { return lamps_; }  // float: Le of each lamp, three channels, times scale
   const gpu::Buffer& sums() const { return sums_; }    // uint: of each texel and half, three channels

@@ -27,7 +27,9 @@ bool Links::compute(Light before, const Moves& moves, const Enough& enough, Solu
 }
 
 double Links::error_estimate() const {
-  return split_half_error(irradiance(), gpu::download<glm::vec4>(device_, links_.map().half_difference));
+  auto half = gpu::download<glm::vec4>(device_, links_.map().half_difference);
+  links_.direct().add_half_difference(half);
+  return split_half_error(irradiance(), half);
 }
 
 void Links::start(Solution& solution) {

@@ -113,7 +113,8 @@ double Rays::error_estimate() const {
   std::vector<glm::vec4> averages(rows_.count()), half(irradiance_.size(), glm::vec4(0));
   filter_.average(gather_.half_difference(), averages);
   for (std::uint32_t row = 0; row < rows_.count(); ++row)
-    if (rows_[row].atlas != no_atlas_texel) half[rows_[row].atlas] = averages[row];
+    if (rows_[row].atlas != no_atlas_texel)
+      half[rows_[row].atlas] = averages[row] + glm::vec4(lamps_.half_difference(row), 0);
   return split_half_error(irradiance_, half);
 }
 

@@ -77,7 +77,10 @@ bool Thesis::compute(Light, const Moves& moves, const Enough&, Solution& solutio
 }
 
 double Thesis::error_estimate() const {
-  return split_half_error(irradiance(), gpu::download<glm::vec4>(device_, map_.half_difference));
+  auto half = gpu::download<glm::vec4>(device_, map_.half_difference);
+  for (std::uint32_t number = 0; lamps_ && number < records_.count(); ++number)
+    half[records_[number].atlas] += glm::vec4(lamps_->half_difference(number), 0);
+  return split_half_error(irradiance(), half);
 }
 
 void Thesis::observe(StageObserver observer, std::uint32_t direction) {
