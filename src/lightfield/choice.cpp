@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <stdexcept>
 #include <vector>
 
@@ -99,14 +100,16 @@ Forecast::Forecast(const Engine& engine, const gpu::Device& device, const scene:
       const Quality choice{fixed.size.value_or(size), fixed.psf.value_or(psf)};
       if (std::ranges::find(choices_, choice) == choices_.end()) choices_.push_back(choice);
     }
-  std::vector<Trial> trials;
+  // Charts may overlap where texels are large. If they always do, whoever checks it says so.
+  std::map<std::uint32_t, bool> fitting;
+  for (const auto& choice : choices_)
+    if (!fixed.size && !fitting.contains(choice.size)) fitting[choice.size] = fits(scene, choice.size);
+  const auto overlaps = [&](const Quality& choice) {
+    return fitting.contains(choice.size) && !fitting[choice.size];
+  };
+  if (!std::ranges::all_of(choices_, overlaps)) std::erase_if(choices_, overlaps);
   try_out({sizes_tried[0], directions_tried[0]});  // drivers compile on the first use
-  for (const auto size : sizes_tried)
-    for (const auto psf : directions_tried) {
-      if (stopped()) break;
-      if (!trials.empty() && trials.back().first_ms > long_trial.count()) break;
-      trials.push_back(try_out({size, psf}));
-    }
+  auto trials = try_all();
   if (trials.empty())
     trials.push_back({.quality = {1, 1}, .first_ms = 0, .step_ms = 0, .error = 0, .irradiance = {}});
   first_ = fit(trials, &Trial::first_ms);
@@ -125,6 +128,21 @@ Forecast::Forecast(const Engine& engine, const gpu::Device& device, const scene:
     const double chance = trials[1].error * trials[1].error + trials[3].error * trials[3].error;
     error_of_texels_ = std::sqrt(std::max(apart * apart - chance, apart * apart / 16));
   }
+}
+
+// Cheapest first, as far as they go.
+std::vector<Forecast::Trial> Forecast::try_all() const {
+  std::vector<Trial> trials;
+  for (const auto size : sizes_tried)
+    for (const auto psf : directions_tried) {
+      if (stopped_() || (!trials.empty() && trials.back().first_ms > long_trial.count())) return trials;
+      try {
+        trials.push_back(try_out({size, psf}));
+      } catch (const std::runtime_error&) {  // larger ones do not fit either
+        return trials;
+      }
+    }
+  return trials;
 }
 
 Forecast::Trial Forecast::try_out(const Quality& quality) const {
@@ -185,45 +203,58 @@ Expectation Forecast::of(const Quality& quality) const {
           .step_ms = step_.at(quality)};
 }
 
-Expectation Forecast::finest_within(std::chrono::milliseconds step) {
+std::vector<Expectation> Forecast::all() const {
   std::vector<Expectation> all;
   for (const auto& choice : choices_) all.push_back(of(choice));
+  std::ranges::sort(all, {}, &Expectation::error);
+  return all;
+}
+
+Expectation Forecast::finest_within(std::chrono::milliseconds step) const {
+  auto expected = all();
   const double budget = static_cast<double>(step.count());
-  const auto best = [&] {
-    std::ranges::sort(all, {}, &Expectation::error);
-    const auto in_time = [&](const Expectation& some) {
-      return some.step_ms <= budget && some.first_ms <= longest_first.count() &&
-             (choices_.size() == 1 || fits(scene_, some.quality.size));
-    };
-    const auto found = std::ranges::find_if(all, in_time);
-    return found != all.end() ? found : std::ranges::min_element(all, {}, &Expectation::step_ms);
+  const auto in_time = [&](const Expectation& some) {
+    return some.step_ms <= budget && some.first_ms <= longest_first.count();
   };
-  std::vector<Quality> known;
+  const auto best = [&] {
+    const auto found = std::ranges::find_if(expected, in_time);
+    return found != expected.end() ? found : std::ranges::min_element(expected, {}, &Expectation::step_ms);
+  };
+  std::vector<Quality> tried;
   for (auto found = best();; found = best()) {
-    if (stopped_() || std::ranges::find(known, found->quality) != known.end()) return *found;
-    known.push_back(found->quality);
-    const auto trial = try_out(found->quality);
-    const double off = trial.step_ms / found->step_ms;
-    if (trial.step_ms <= budget * allowed_excess || choices_.size() == 1) {
-      found->step_ms = trial.step_ms;
-      return *found;
+    if (stopped_() || std::ranges::find(tried, found->quality) != tried.end()) return *found;
+    tried.push_back(found->quality);
+    try {
+      const double took = try_out(found->quality).step_ms, off = took / found->step_ms;
+      if (took > budget * allowed_excess)
+        for (auto& some : expected)
+          if (std::ranges::find(tried, some.quality) == tried.end()) some.step_ms *= off;
+      found->step_ms = took;
+      if (took <= budget * allowed_excess) return *found;
+    } catch (const std::runtime_error&) {  // it does not fit
+      if (expected.size() == 1) throw;
+      expected.erase(found);
     }
-    for (auto& some : all)
-      if (std::ranges::find(known, some.quality) == known.end()) some.step_ms *= off;
-    found->step_ms = trial.step_ms;
   }
 }
 
 Expectation Forecast::quickest_for(double error) const {
-  std::optional<Expectation> best;
-  for (const auto& choice : choices_) {
-    const auto some = of(choice);
-    if (choices_.size() > 1 && !fits(scene_, choice.size)) continue;
-    const bool better = !best || (some.error <= error ? best->error > error || some.first_ms < best->first_ms
-                                                      : some.error < best->error);
-    if (better) best = some;
+  for (auto expected = all();;) {
+    // The least error comes first.
+    auto best = expected.begin();
+    for (auto some = expected.begin(); some != expected.end(); ++some)
+      if (some->error <= error && some->first_ms < best->first_ms) best = some;
+    try {
+      Settings settings = settings_;
+      settings.size = best->quality.size;
+      settings.psf = best->quality.psf;
+      engine_.make(device_, scene_, settings);
+      return *best;
+    } catch (const std::runtime_error&) {  // it does not fit
+      if (expected.size() == 1) throw;
+      expected.erase(best);
+    }
   }
-  return best.value_or(of(choices_.front()));
 }
 
 const Engine& suited(std::span<const Engine* const> engines, const gpu::Device& device,
@@ -241,17 +272,25 @@ const Engine& tried(std::span<const Engine* const> engines, const gpu::Device& d
   double least = 0;
   for (const Engine* engine : engines) {
     if (engines.size() > 1 && engine == &lightfield::engines().front()) continue;  // renders all at each step
-    const Forecast forecast(*engine, device, scene, settings, {}, [] { return false; });
-    const auto expected = forecast.of({settings.size, engine->psf});
+    const auto expected = [&]() -> std::optional<Expectation> {
+      try {
+        const Forecast forecast(*engine, device, scene, settings, {}, [] { return false; });
+        return forecast.of({settings.size, engine->psf});
+      } catch (const std::runtime_error& error) {
+        spdlog::info("not --method {}: {}", engine->name, error.what());
+        return {};
+      }
+    }();
+    if (!expected) continue;
     spdlog::info("--method {}: a step in {:.1f} ms, {:.2g} % off by its directions", engine->name,
-                 expected.step_ms, 100 * expected.error_of_directions);
+                 expected->step_ms, 100 * expected->error_of_directions);
     // Four times the directions halve the error.
-    const double merit = expected.step_ms * expected.error_of_directions * expected.error_of_directions;
+    const double merit = expected->step_ms * expected->error_of_directions * expected->error_of_directions;
     if (best != nullptr && merit >= least) continue;
     best = engine;
     least = merit;
   }
-  return *best;
+  return best != nullptr ? *best : *engines.back();
 }
 
 }  // namespace lichtveld::lightfield

@@ -43,7 +43,19 @@ TEST_F(Choice, MoreTimeBuysLessError) {
   EXPECT_GE(forecast.finest_within(0ms).error, coarse.error) << "the quickest, where none is in time";
   EXPECT_LT(forecast.finest_within(200ms).error, coarse.error);
   EXPECT_EQ(forecast.quickest_for(1).quality, (Quality{64, 24}));
-  EXPECT_EQ(forecast.quickest_for(1e-9).quality, (Quality{1024, 1536}));
+  EXPECT_GT(forecast.quickest_for(1e-9).quality.size, 256u);
+}
+
+TEST_F(Choice, WhatDoesNotFitIsNotChosen) {
+  constexpr std::uint64_t memory = 40 << 20;
+  const Settings settings{.memory = memory};
+  const Forecast forecast(rays_, device(), scene_, settings, {}, never);
+  for (const auto& chosen : {forecast.quickest_for(1e-9), forecast.finest_within(10s)}) {
+    EXPECT_GT(chosen.quality.size * chosen.quality.size * chosen.quality.psf, 128u * 128 * 24);
+    EXPECT_NO_THROW(rays_.make(device(), scene_,
+                               {.size = chosen.quality.size, .psf = chosen.quality.psf, .memory = memory}));
+  }
+  EXPECT_THROW(Forecast(rays_, device(), scene_, {.memory = 1}, {}, never), std::runtime_error);
 }
 
 TEST_F(Choice, WhatIsFixedStays) {

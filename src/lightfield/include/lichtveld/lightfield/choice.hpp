@@ -31,9 +31,9 @@ struct Quality {
 // What a light map of some quality is expected to be.
 struct Expectation {
   Quality quality;
-  double error;               // rel_rmse of E as it is seen, between texels too
+  double error;                // rel_rmse of E as it is seen, between texels too
   double error_of_directions;  // its part that more of them lessen
-  double first_ms, step_ms;  // all of its light afresh; and after a move of the first movable body
+  double first_ms, step_ms;    // all of its light afresh; and after a move of the first movable body
 };
 
 // What an engine's light maps of a scene cost and how far off they are, from trials of a few small ones on this
@@ -53,8 +53,9 @@ class Forecast {
 
   // The least error of all whose step takes at most so long; the quickest one if none does. Is tried before it
   // is taken, for its true time.
-  Expectation finest_within(std::chrono::milliseconds step);
-  // The quickest first map whose error is at most that; the least error if none is so exact.
+  Expectation finest_within(std::chrono::milliseconds step) const;
+  // The quickest first map whose error is at most that; the least error if none is so exact. What does not fit
+  // into memory is left out, here and above; throws as Engine::make if nothing fits.
   Expectation quickest_for(double error) const;
 
  private:
@@ -64,7 +65,9 @@ class Forecast {
     double at(const Quality& quality) const;
   };
 
+  std::vector<Expectation> all() const;  // to choose from, the least error first
   Trial try_out(const Quality& quality) const;
+  std::vector<Trial> try_all() const;
   static Cost fit(std::span<const Trial> trials, double Trial::*time);
 
   const Engine& engine_;
