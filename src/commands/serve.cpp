@@ -22,9 +22,11 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// Light maps a second that a map after a step leaves room for, where nobody asks for another rate; each may
-// take half of its share, because browsers may share the machine.
+// Light maps a second that a map after a step leaves room for, where nobody asks for another rate.
 constexpr double usual_rate = 15;
+// Of a map's share of a second it may take so much: browsers that share the machine and draw without a GPU make
+// it take two to three times as long.
+constexpr double share_of_a_map = 1.0 / 3;
 // Light that is off by more shows as blotches.
 constexpr double visible_error = 0.1;
 constexpr std::size_t cubes_of_players = 2;  // as stream's protocol has it
@@ -137,8 +139,8 @@ void choose_quality(ServeOptions& options, const lightfield::Engine& engine, con
                     const scene::Scene& scene, const std::function<bool()>& stopped) {
   const double rate = options.rate_is_asked_for ? options.rate : usual_rate;
   lightfield::Forecast forecast(engine, device, scene, options.settings, *options.to_choose, stopped);
-  const auto expected =
-      forecast.finest_within(std::chrono::milliseconds(std::max(std::lround(500 / rate), 1L)));
+  const auto expected = forecast.finest_within(
+      std::chrono::milliseconds(std::max(std::lround(1000 * share_of_a_map / rate), 1L)));
   options.settings.size = expected.quality.size;
   options.settings.psf = expected.quality.psf;
   spdlog::info("--size {} --psf {}: a map in {:.0f} ms after a move, {:.1f} % off", expected.quality.size,
