@@ -35,15 +35,15 @@ TEST_F(Choice, ATrialFindsTheBetterOne) {
 }
 
 TEST_F(Choice, MoreTimeBuysLessError) {
-  Forecast forecast(rays_, device(), scene_, {}, {}, never);
+  const Forecast forecast(rays_, device(), scene_, {.memory = 200 << 20}, {}, never);
   const auto coarse = forecast.of({64, 24}), fine = forecast.of({512, 384});
   EXPECT_LT(fine.error, coarse.error / 2);
   EXPECT_GT(fine.step_ms, 4 * coarse.step_ms);
   EXPECT_GT(fine.first_ms, 4 * coarse.first_ms);
   EXPECT_GE(forecast.finest_within(0ms).error, coarse.error) << "the quickest, where none is in time";
-  EXPECT_LT(forecast.finest_within(200ms).error, coarse.error);
+  EXPECT_LT(forecast.finest_within(100ms).error, coarse.error);
   EXPECT_EQ(forecast.quickest_for(1).quality, (Quality{64, 24}));
-  EXPECT_GT(forecast.quickest_for(1e-9).quality.size, 256u);
+  EXPECT_GE(forecast.quickest_for(1e-9).quality.size, 256u);
 }
 
 TEST_F(Choice, WhatDoesNotFitIsNotChosen) {

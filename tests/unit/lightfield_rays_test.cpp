@@ -317,7 +317,7 @@ TEST_F(RaysMethod, WhatDoesNotFitIsRefusedBeforeItIsTaken) {
   EXPECT_EQ(message({.size = 64, .psf = 24}), "");
   const auto allowed = message({.size = 64, .psf = 384, .memory = 1 << 20});
   EXPECT_NE(allowed.find("1 MiB are what --memory allows; try a smaller --size"), std::string::npos) << allowed;
-  const auto free = message({.size = 4096, .psf = 6144});
+  const auto free = message({.size = 2048, .psf = 6144});
   EXPECT_NE(free.find("of what is free"), std::string::npos) << free;
 }
 
