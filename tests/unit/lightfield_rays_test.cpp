@@ -151,6 +151,30 @@ TEST_F(RaysMethod, AgreesWithTheReferenceWhateverTheLampsSize) {
   }
 }
 
+// Shadows fainter than one of a lamp's points: what most of a texel's neighbours see is not all that it sees.
+TEST_F(RaysMethod, ThinBarsCastTheirShadows) {
+  SceneBuilder builder;
+  square(builder, "floor", 0, false, chart_a, builder.material(glm::vec3(0)));
+  square(builder, "lamp", 2, true, chart_c, builder.material(glm::vec3(0), glm::vec3(9)), 0.3f);
+  for (int bar = 0; bar < 4; ++bar) {
+    const float x = -0.6f + 0.4f * static_cast<float>(bar), half = bar % 2 ? 0.002f : 0.01f;
+    builder.set_movable(builder.box(
+        "bar", {x - half, 1, -1}, {x + half, 1 + 2 * half, 1},
+        {0.5f + 0.125f * static_cast<float>(bar), 0.5f, 0.6f + 0.125f * static_cast<float>(bar), 0.75f},
+        builder.material(glm::vec3(0))));
+  }
+  const auto scene = loaded(builder);
+  const Settings settings{.size = 128, .psf = 24, .bounces = 1};
+  const auto traced = reference::trace(scene, {}, {.size = 128, .bounces = 1, .spp = 1024});
+  const auto truth = of(texels(scene, 128, traced.texels, traced.standard_error), "floor");
+  const auto seen = of(texels_of(scene, settings), "floor");
+  double squares = 0;
+  for (std::size_t i = 0; i < truth.size(); ++i)
+    squares += std::pow(seen[i].irradiance.g - truth[i].irradiance.g, 2) - std::pow(truth[i].standard_error, 2);
+  EXPECT_NEAR(mean(seen) / mean(truth), 1, 0.002);
+  EXPECT_LT(std::sqrt(squares / static_cast<double>(truth.size())) / mean(truth), 0.01);
+}
+
 TEST_F(RaysMethod, MoreSetsAreNearerForTheSameRays) {
   const auto scene = lamp_room(1);
   const auto truth = fresh(scene, {.size = 64, .psf = 6144, .rays = {.sets = 1}});

@@ -185,7 +185,7 @@ void place_samples(AreaLamp& lamp) {
     const glm::vec3 normal = glm::normalize(normal_of(patch));
     samples.x[i] = place.x, samples.y[i] = place.y, samples.z[i] = place.z;
     samples.nx[i] = normal.x, samples.ny[i] = normal.y, samples.nz[i] = normal.z;
-    samples.double_sided[i] = patch.double_sided;
+    samples.back[i] = patch.double_sided ? -1.0f : 0.0f;
     samples.intensity[i] = patch.emission / mean(patch.emission) * power / static_cast<float>(samples_of_lamp);
   }
 }

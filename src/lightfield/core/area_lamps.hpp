@@ -27,7 +27,7 @@ constexpr std::uint32_t samples_of_lamp = 64;
 // Points on a lamp, each of which stands for as much of its power: area times mean radiance.
 struct LampSamples {
   std::array<float, samples_of_lamp> x, y, z, nx, ny, nz;  // place and front, bodies at rest [m]
-  std::array<char, samples_of_lamp> double_sided;
+  std::array<float, samples_of_lamp> back;           // -1 where it shines from its back, too, and 0 where not
   std::array<glm::vec3, samples_of_lamp> intensity;  // area * Le that it stands for [W sr^-1]
 };
 

@@ -4,35 +4,60 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <numeric>
 
 #include "core/parallel.hpp"
+#include "lichtveld/scene/ray_queue.hpp"
+#include "lichtveld/scene/slabs.hpp"
 
 namespace lichtveld::lightfield {
 
 namespace {
 
-constexpr std::uint32_t packet = scene::RayPacket::size;
+using Samples = std::array<float, samples_of_lamp>;
+// Every eighth of the samples.
+constexpr std::uint64_t eighth = 0x0101010101010101;
+// Fewer rays than this do not tell that all others of a block are the same.
+constexpr int rays_that_decide = 64;
+// Receivers of one block are in one square of so many texels a side of the atlas, and at most so far from its
+// first [its sides].
+constexpr std::uint32_t block_side = 4;
+constexpr float block_reach = 8;
 // Where all lamps together have more patches, those of more than a few are the sum over their samples: in
 // closed form it would take too long.
 constexpr std::size_t most_patches = 1024, few_patches = 16;
-constexpr std::uint32_t receivers_of_a_task = 256;
+constexpr std::uint32_t receivers_of_a_task = 256, blocks_of_a_task = 16;
 // A ray ends this share of its way before its sample, which lies on a surface.
 constexpr float short_of_sample = 1 - 1e-4f;
 
-// What a sample of intensity 1 would bring to a receiver, which `to` shifts it from; nothing from below [m^-2].
-float weight_of(const LampSamples& samples, std::uint32_t i, const glm::vec3& to, const TexelRecord& receiver) {
-  const glm::vec3 d = glm::vec3(samples.x[i], samples.y[i], samples.z[i]) + to;
-  const float squared = glm::dot(d, d), facing = glm::dot(d, receiver.normal);
-  const float out = -(d.x * samples.nx[i] + d.y * samples.ny[i] + d.z * samples.nz[i]);
-  const float there = samples.double_sided[i] ? std::abs(out) : std::max(out, 0.0f);
-  if (squared <= 0 || facing <= 0 || glm::dot(d, receiver.face) <= 0) return 0;
-  return facing * there / (squared * squared);
+// What each sample would bring to a receiver with intensity 1, which `to` shifts it from; nothing from below
+// [m^-2]. Written so that compilers do several at once.
+void weigh(const LampSamples& samples, const glm::vec3& to, const TexelRecord& receiver, Samples& weights) {
+  const glm::vec3 normal = receiver.normal, face = receiver.face;
+  for (std::uint32_t i = 0; i < samples_of_lamp; ++i) {
+    const float x = samples.x[i] + to.x, y = samples.y[i] + to.y, z = samples.z[i] + to.z;
+    const float squared = x * x + y * y + z * z, facing = x * normal.x + y * normal.y + z * normal.z,
+                above = x * face.x + y * face.y + z * face.z;
+    const float out = -(x * samples.nx[i] + y * samples.ny[i] + z * samples.nz[i]);
+    const float there = std::max(out, out * samples.back[i]);
+    const float weight = facing * there / (squared * squared);
+    weights[i] = std::min(std::min(squared, facing), std::min(above, there)) > 0 ? weight : 0.0f;
+  }
 }
 
-// Whether a box may lie between a place and another box: whether on the way from the one to the other, all of
-// which grows with the way, some part is in it.
-bool may_hide(const glm::vec3& low, const glm::vec3& high, const glm::vec3& place, const glm::vec3& lamp_low,
-              const glm::vec3& lamp_high) {
+scene::Box shifted(const scene::Box& box, const glm::vec3& by, float grown) {
+  return {box.min + by - grown, box.max + by + grown};
+}
+
+// Whether all of a box is above a place.
+bool is_above(const scene::Box& box, const glm::vec3& up, const glm::vec3& place) {
+  const glm::vec3 middle = (box.min + box.max) / 2.0f - place, half = (box.max - box.min) / 2.0f;
+  return glm::dot(up, middle) > glm::dot(glm::abs(up), half);
+}
+
+// Whether a box may lie between two others: whether on the way from the one to the other some part of what
+// the one becomes, growing or shrinking to the other, is in it.
+bool may_hide(const scene::Box& box, const scene::Box& places, const scene::Box& lamp) {
   float first = 0, last = 1;                            // of the way
   const auto at_least = [&](float from, float slope) {  // from + way * slope >= 0
     if (slope > 0)
@@ -43,8 +68,8 @@ bool may_hide(const glm::vec3& low, const glm::vec3& high, const glm::vec3& plac
       last = -1;
   };
   for (int axis = 0; axis < 3; ++axis) {
-    at_least(high[axis] - place[axis], place[axis] - lamp_low[axis]);
-    at_least(place[axis] - low[axis], lamp_high[axis] - place[axis]);
+    at_least(box.max[axis] - places.min[axis], places.min[axis] - lamp.min[axis]);
+    at_least(places.max[axis] - box.min[axis], lamp.max[axis] - places.max[axis]);
   }
   return first <= last;
 }
@@ -52,13 +77,9 @@ bool may_hide(const glm::vec3& low, const glm::vec3& high, const glm::vec3& plac
 }  // namespace
 
 LampLight::LampLight(const scene::RayIndex& index, const scene::Scene& scene,
-                     std::span<const TexelRecord> receivers)
-    : index_(index),
-      scene_(scene),
-      receivers_(receivers),
-      of_body_(scene.bodies.size()),
-      irradiance_(receivers.size(), glm::vec3(0)) {
-  for (std::uint32_t i = 0; i < receivers.size(); ++i) of_body_[receivers[i].body].push_back(i);
+                     std::span<const TexelRecord> receivers, std::uint32_t size)
+    : index_(index), scene_(scene), receivers_(receivers), irradiance_(receivers.size(), glm::vec3(0)) {
+  find_blocks(size);
   auto shapes = find_area_lamps(scene, most_lamps);
   std::size_t patches = 0;
   for (const auto& shape : shapes) patches += shape.patches.size();
@@ -71,6 +92,34 @@ LampLight::LampLight(const scene::RayIndex& index, const scene::Scene& scene,
     lamp.own.assign(receivers.size(), 0);
     lamp.seen = lamp.own;
     lamp.hidden.assign(scene.bodies.size(), std::vector<std::vector<Hidden>>(scene.bodies.size()));
+  }
+}
+
+void LampLight::find_blocks(std::uint32_t size) {
+  const auto square = [&](std::uint32_t receiver) {
+    const auto& record = receivers_[receiver];
+    return std::array{record.body, record.atlas / size / block_side, record.atlas % size / block_side};
+  };
+  order_.resize(receivers_.size());
+  std::iota(order_.begin(), order_.end(), 0u);
+  std::ranges::stable_sort(order_, {}, square);
+  blocks_of_body_.assign(scene_.bodies.size(), {});
+  for (std::uint32_t i = 0; i < order_.size(); ++i) {
+    const auto& record = receivers_[order_[i]];
+    const auto belongs_to = [&](const Block& block) {
+      const std::uint32_t first = order_[block.first];
+      return block.size() < most_receivers && square(first) == square(order_[i]) &&
+             glm::distance(receivers_[first].position, record.position) <= block_reach * record.side;
+    };
+    if (blocks_.empty() || !belongs_to(blocks_.back())) {
+      Range& of_body = blocks_of_body_[record.body];
+      if (of_body.size() == 0) of_body.first = static_cast<std::uint32_t>(blocks_.size());
+      blocks_.push_back({{i, i}, {record.position, record.position}});
+      of_body.end = static_cast<std::uint32_t>(blocks_.size());
+    }
+    Block& block = blocks_.back();
+    block.end = i + 1;
+    block.box = {glm::min(block.box.min, record.position), glm::max(block.box.max, record.position)};
   }
 }
 
@@ -89,7 +138,7 @@ void LampLight::light(const scene::Offsets& offsets, const Moves& moves) {
 }
 
 std::vector<char> LampLight::light(Lamp& lamp, const Moves& moves) {
-  const auto bodies = static_cast<std::uint32_t>(of_body_.size());
+  const auto bodies = static_cast<std::uint32_t>(scene_.bodies.size());
   const bool all = moves.has(lamp.shape.body);
   const auto moved = [&](std::uint32_t body) { return all || moves.has(body); };
   enum : char { same, hidden_anew, reset };
@@ -103,10 +152,10 @@ std::vector<char> LampLight::light(Lamp& lamp, const Moves& moves) {
         }
   for (std::uint32_t body = 0; body < bodies; ++body) {
     if (!moved(body)) continue;
-    const auto& receivers = of_body_[body];
-    for_each_index(0, static_cast<std::uint32_t>(receivers.size()), receivers_of_a_task, [&](std::uint32_t i) {
-      find_own(lamp, receivers[i]);
-      touched[receivers[i]] = reset;
+    const auto& blocks = blocks_of_body_[body];
+    for_each_index(blocks.first, blocks.end, blocks_of_a_task, [&](std::uint32_t i) {
+      find_own(lamp, body, blocks_[i]);
+      for (auto at = blocks_[i].first; at < blocks_[i].end; ++at) touched[order_[at]] = reset;
     });
   }
   for (std::uint32_t of = 0; of < bodies; ++of)
@@ -135,134 +184,156 @@ bool LampLight::contact(std::uint32_t receiver, std::uint32_t body) const {
                         record.triangle);
 }
 
-void LampLight::find_own(Lamp& lamp, std::uint32_t receiver) const {
+// Where its rays start [m].
+glm::vec3 LampLight::start(std::uint32_t receiver) const {
   const auto& record = receivers_[receiver];
-  const glm::vec3 place = record.position + offsets_[record.body] - offsets_[lamp.shape.body];
-  lamp.unshadowed[receiver] = glm::vec3(0);
-  if (lamp.sampled) {
-    for (std::uint32_t i = 0; i < samples_of_lamp; ++i)
-      lamp.unshadowed[receiver] +=
-          lamp.shape.samples.intensity[i] * weight_of(lamp.shape.samples, i, -place, record);
-  } else {
-    for (const auto& patch : lamp.shape.patches)
-      lamp.unshadowed[receiver] += irradiance_of(patch, place, record.normal, record.face);
-  }
+  return record.position + offsets_[record.body] + index_.skin() / 2 * record.face;
+}
+
+// The samples that would bring light to a receiver to which any comes, so that it matters whether they are
+// seen.
+LampLight::Bits LampLight::shining(const Lamp& lamp, std::uint32_t receiver) const {
+  const auto& record = receivers_[receiver];
+  const scene::Box box = shifted(lamp.shape.box, offsets_[lamp.shape.body], 0);
+  if (lamp.shape.patches.size() == 1 && is_above(box, record.face, record.position + offsets_[record.body]) &&
+      is_above(box, record.normal, record.position + offsets_[record.body]))
+    return all_samples;
+  Samples weights;
+  weigh(lamp.shape.samples, offsets_[lamp.shape.body] - (record.position + offsets_[record.body]), record,
+        weights);
   Bits bits = 0;
-  if (lamp.unshadowed[receiver] != glm::vec3(0) && !contact(receiver, 0) &&
-      (record.body == 0 || !contact(receiver, record.body))) {
-    bits = trace(lamp, receiver, 0, all_samples);
-    if (record.body != 0 && index_.may_meet_own_body(record.triangle, record.face))
-      bits = trace(lamp, receiver, record.body, bits);
-  }
-  lamp.own[receiver] = lamp.seen[receiver] = bits;
+  for (std::uint32_t i = 0; i < samples_of_lamp; ++i) bits |= Bits{weights[i] > 0} << i;
+  // A sliver of the lamp between samples that are below the horizon: all of them stand for it.
+  return bits == 0 ? all_samples : bits;
 }
 
-// Of the samples that are wanted those that a body does not hide.
-LampLight::Bits LampLight::trace(const Lamp& lamp, std::uint32_t receiver, std::uint32_t body,
-                                 Bits wanted) const {
-  const auto& record = receivers_[receiver];
+void LampLight::find_own(Lamp& lamp, std::uint32_t body, const Block& block) const {
+  BlockBits looked_at{};
+  bool meets_body = false;
+  for (std::uint32_t i = 0; i < block.size(); ++i) {
+    const std::uint32_t receiver = order_[block.first + i];
+    const auto& record = receivers_[receiver];
+    glm::vec3& unshadowed = lamp.unshadowed[receiver];
+    const glm::vec3 place = record.position + offsets_[record.body] - offsets_[lamp.shape.body];
+    unshadowed = glm::vec3(0);
+    if (lamp.sampled) {
+      Samples weights;
+      weigh(lamp.shape.samples, -place, record, weights);
+      for (std::uint32_t k = 0; k < samples_of_lamp; ++k)
+        unshadowed += lamp.shape.samples.intensity[k] * weights[k];
+    } else {
+      for (const auto& patch : lamp.shape.patches)
+        unshadowed += irradiance_of(patch, place, record.normal, record.face);
+    }
+    if (unshadowed == glm::vec3(0) || contact(receiver, 0) || (body != 0 && contact(receiver, body))) continue;
+    looked_at[i] = shining(lamp, receiver);
+    meets_body |= body != 0 && index_.may_meet_own_body(record.triangle, record.face);
+  }
+  BlockBits left = looked_at;
+  for (const std::uint32_t other : {0u, body}) {
+    if (other != 0 && !meets_body) continue;
+    const auto out_of_sight = hidden(lamp, other, block, left, left);
+    for (std::uint32_t i = 0; i < block.size(); ++i) left[i] &= ~out_of_sight[i];
+    if (body == 0) break;
+  }
+  for (std::uint32_t i = 0; i < block.size(); ++i) {
+    const std::uint32_t receiver = order_[block.first + i];
+    // What brings no light is out of nobody's way.
+    lamp.own[receiver] = lamp.seen[receiver] = looked_at[i] == 0 ? 0 : left[i] | ~looked_at[i];
+  }
+}
+
+// Of the samples that each receiver of a block looks at those that a body hides, which `may_be` are all of,
+// too.
+LampLight::BlockBits LampLight::hidden(const Lamp& lamp, std::uint32_t body, const Block& block,
+                                       const BlockBits& looked_at, const BlockBits& may_be) const {
+  struct Of {
+    std::uint32_t in_block, sample;
+  };
   const auto& samples = lamp.shape.samples;
-  const glm::vec3 place = record.position + offsets_[record.body] + index_.skin() / 2 * record.face;
-  const glm::vec3 to = offsets_[lamp.shape.body] - place;
-  Bits left = wanted;
-  scene::RayPacket rays;
-  for (std::uint32_t first = 0; first < samples_of_lamp; first += packet) {
-    rays.lanes = static_cast<std::uint32_t>(wanted >> first & 0xffff);
-    if (rays.lanes == 0) continue;
-    for (std::uint32_t lane = 0; lane < packet; ++lane) {
-      const std::uint32_t i = first + lane;
-      rays.set(lane, place, glm::vec3(samples.x[i], samples.y[i], samples.z[i]) + to);
+  const glm::vec3& lamp_at = offsets_[lamp.shape.body];
+  BlockBits found{};
+  scene::RayQueue<Of> queue;
+  const auto trace = [&](const scene::RayPacket& rays, std::span<const Of> of) {
+    const std::uint32_t occluded = index_.occluded(body, offsets_[body], rays, short_of_sample);
+    for (std::size_t lane = 0; lane < of.size(); ++lane)
+      found[of[lane].in_block] |= Bits{occluded >> lane & 1} << of[lane].sample;
+  };
+  const auto look = [&](std::uint32_t i, Bits some) {
+    if (some == 0) return;
+    const glm::vec3 place = start(order_[block.first + i]);
+    for (; some != 0; some &= some - 1) {
+      const auto sample = static_cast<std::uint32_t>(std::countr_zero(some));
+      const glm::vec3 there = glm::vec3(samples.x[sample], samples.y[sample], samples.z[sample]) + lamp_at;
+      queue.add(place, there - place, {i, sample}, trace);
     }
-    left &= ~(Bits{index_.occluded(body, offsets_[body], rays, short_of_sample)} << first);
+  };
+  int looked = 0, hid = 0;
+  for (std::uint32_t i = 0; i < block.size(); ++i) {
+    look(i, may_be[i] & (eighth << i % 8));
+    looked += std::popcount(looked_at[i] & (eighth << i % 8));
   }
-  return left;
+  queue.flush(trace);
+  for (const Bits bits : found) hid += std::popcount(bits);
+  if (looked >= rays_that_decide && hid == 0) return found;
+  if (looked >= rays_that_decide && hid == looked) return may_be;
+  for (std::uint32_t i = 0; i < block.size(); ++i) look(i, may_be[i] & ~(eighth << i % 8));
+  queue.flush(trace);
+  return found;
 }
-
-// Samples that a body may hide, whichever receivers look at them, so that packets are full.
-class LampLight::Search {
- public:
-  Search(const LampLight& light, std::uint32_t body, std::vector<Hidden>& found)
-      : light_(light), body_(body), found_(found) {}
-
-  void add(std::uint32_t receiver, std::uint32_t sample, const glm::vec3& place, const glm::vec3& way) {
-    rays_.set(count_, place, way);
-    receiver_[count_] = receiver;
-    sample_[count_] = sample;
-    if (++count_ == packet) trace();
-  }
-
-  void trace() {
-    if (count_ == 0) return;
-    for (std::uint32_t lane = count_; lane < packet; ++lane)  // Embree reads the others, too
-      rays_.set(lane, {rays_.x[0], rays_.y[0], rays_.z[0]}, {rays_.dx[0], rays_.dy[0], rays_.dz[0]});
-    rays_.lanes = (1u << count_) - 1;
-    const std::uint32_t hidden = light_.index_.occluded(body_, light_.offsets_[body_], rays_, short_of_sample);
-    for (std::uint32_t lane = 0; lane < count_; ++lane) {
-      if (!(hidden >> lane & 1)) continue;
-      if (found_.empty() || found_.back().receiver != receiver_[lane]) found_.push_back({receiver_[lane], 0});
-      found_.back().bits |= Bits{1} << sample_[lane];
-    }
-    count_ = 0;
-  }
-
- private:
-  const LampLight& light_;
-  const std::uint32_t body_;
-  std::vector<Hidden>& found_;
-  scene::RayPacket rays_;
-  std::array<std::uint32_t, packet> receiver_, sample_;
-  std::uint32_t count_ = 0;
-};
 
 std::vector<LampLight::Hidden> LampLight::find_hidden(const Lamp& lamp, std::uint32_t body,
                                                       std::uint32_t of) const {
-  const auto& receivers = of_body_[of];
-  const auto count = static_cast<std::uint32_t>(receivers.size());
-  std::vector<std::vector<Hidden>> of_task((count + receivers_of_a_task - 1) / receivers_of_a_task);
+  const auto& blocks = blocks_of_body_[of];
+  std::vector<std::vector<Hidden>> of_task((blocks.size() + blocks_of_a_task - 1) / blocks_of_a_task);
   for_each_index(0, static_cast<std::uint32_t>(of_task.size()), 1, [&](std::uint32_t task) {
-    const auto first = task * receivers_of_a_task;
-    Search search(*this, body, of_task[task]);
-    for (auto i = first; i < std::min(first + receivers_of_a_task, count); ++i)
-      find_hidden(lamp, body, receivers[i], search, of_task[task]);
-    search.trace();
+    const auto first = blocks.first + task * blocks_of_a_task;
+    for (auto i = first; i < std::min(first + blocks_of_a_task, blocks.end); ++i)
+      find_hidden(lamp, body, of, blocks_[i], of_task[task]);
   });
   std::vector<Hidden> all;
   for (const auto& some : of_task) all.insert(all.end(), some.begin(), some.end());
   return all;
 }
 
-void LampLight::find_hidden(const Lamp& lamp, std::uint32_t body, std::uint32_t receiver, Search& search,
+void LampLight::find_hidden(const Lamp& lamp, std::uint32_t body, std::uint32_t of, const Block& block,
                             std::vector<Hidden>& found) const {
-  if (lamp.own[receiver] == 0) return;
-  const auto& record = receivers_[receiver];
-  const auto& samples = lamp.shape.samples;
-  const scene::Box& rest = scene_.bodies[body].box;
-  const glm::vec3 skin(index_.skin()), low = rest.min + offsets_[body] - skin,
-                                       high = rest.max + offsets_[body] + skin;
-  const glm::vec3 surface = record.position + offsets_[record.body],
-                  place = surface + index_.skin() / 2 * record.face;
+  const float skin = index_.skin();
   const glm::vec3& lamp_at = offsets_[lamp.shape.body];
-  if (!may_hide(low, high, place, lamp.shape.box.min + lamp_at, lamp.shape.box.max + lamp_at)) return;
-  const bool inside =
-      glm::all(glm::greaterThanEqual(surface, low)) && glm::all(glm::lessThanEqual(surface, high));
-  if (inside && contact(receiver, body)) {
-    search.trace();  // those before it come first
-    found.push_back({receiver, all_samples});
-    return;
+  const scene::Box box = shifted(scene_.bodies[body].box, offsets_[body], skin),
+                   lamp_box = shifted(lamp.shape.box, lamp_at, 0);
+  if (!may_hide(box, shifted(block.box, offsets_[of], skin), lamp_box)) return;
+  const auto& samples = lamp.shape.samples;
+  BlockBits looked_at{}, may_be{};
+  for (std::uint32_t i = 0; i < block.size(); ++i) {
+    const std::uint32_t receiver = order_[block.first + i];
+    if (lamp.own[receiver] == 0) continue;
+    const glm::vec3 place = start(receiver);
+    if (!may_hide(box, {place, place}, lamp_box)) continue;
+    const bool inside = glm::all(glm::greaterThanEqual(place, box.min - skin)) &&
+                        glm::all(glm::lessThanEqual(place, box.max + skin));
+    if (inside && contact(receiver, body)) {
+      found.push_back({receiver, all_samples});
+      continue;
+    }
+    const glm::vec3 to = lamp_at - place;
+    Samples x, y, z, entries;
+    for (std::uint32_t k = 0; k < samples_of_lamp; ++k) {
+      x[k] = 1 / (samples.x[k] + to.x);
+      y[k] = 1 / (samples.y[k] + to.y);
+      z[k] = 1 / (samples.z[k] + to.z);
+    }
+    const scene::Coordinates places{&place.x, &place.y, &place.z};
+    scene::enter<0, 1>(box, samples_of_lamp, places, places, {x.data(), y.data(), z.data()}, entries.data());
+    Bits crossing = 0;
+    for (std::uint32_t k = 0; k < samples_of_lamp; ++k) crossing |= Bits{entries[k] <= 1} << k;
+    if (crossing == 0) continue;
+    looked_at[i] = lamp.own[receiver] & shining(lamp, receiver);
+    may_be[i] = looked_at[i] & crossing;
   }
-  const glm::vec3 a = low - place, b = high - place, to = lamp_at - place;
-  std::array<std::uint32_t, samples_of_lamp> misses;
-  for (std::uint32_t i = 0; i < samples_of_lamp; ++i) {
-    const float dx = 1 / (samples.x[i] + to.x), dy = 1 / (samples.y[i] + to.y), dz = 1 / (samples.z[i] + to.z);
-    const float ax = a.x * dx, bx = b.x * dx, ay = a.y * dy, by = b.y * dy, az = a.z * dz, bz = b.z * dz;
-    const float first =
-        std::max(std::max(std::min(ax, bx), std::min(ay, by)), std::max(std::min(az, bz), 0.0f));
-    const float last = std::min(std::min(std::max(ax, bx), std::max(ay, by)), std::min(std::max(az, bz), 1.0f));
-    misses[i] = first > last;
-  }
-  for (std::uint32_t i = 0; i < samples_of_lamp; ++i)
-    if (!misses[i] && (lamp.own[receiver] >> i & 1))
-      search.add(receiver, i, place, glm::vec3(samples.x[i], samples.y[i], samples.z[i]) + to);
+  const auto bits = hidden(lamp, body, block, looked_at, may_be);
+  for (std::uint32_t i = 0; i < block.size(); ++i)
+    if (bits[i] != 0) found.push_back({order_[block.first + i], bits[i]});
 }
 
 glm::vec3 LampLight::arriving(const Lamp& lamp, std::uint32_t receiver) const {
@@ -278,11 +349,12 @@ float LampLight::share_seen(const Lamp& lamp, std::uint32_t receiver, Bits some)
   const auto& samples = lamp.shape.samples;
   const Bits seen = lamp.seen[receiver] & some;
   const glm::vec3 to = offsets_[lamp.shape.body] - (record.position + offsets_[record.body]);
+  Samples weights;
+  weigh(samples, to, record, weights);
   float all = 0, visible = 0;
   for (std::uint32_t i = 0; i < samples_of_lamp; ++i) {
-    const float weight = (some >> i & 1) ? weight_of(samples, i, to, record) : 0.0f;
-    all += weight;
-    visible += (seen >> i & 1) ? weight : 0.0f;
+    all += (some >> i & 1) ? weights[i] : 0.0f;
+    visible += (seen >> i & 1) ? weights[i] : 0.0f;
   }
   // Where no sample shines here, a sliver of the lamp may still.
   return all > 0 ? visible / all

@@ -3,15 +3,18 @@
 // Form-Factors"), times the share of it that is seen, by sample points (a ratio estimator: Heitz, Hill and
 // McGuire 2018, "Combining Analytic Direct Illumination and Stochastic Shadows"). Which points a receiver sees
 // is kept as bits: those that what stands still leaves, and those that each body hides, so that a move redoes
-// that body's bits alone.
+// that body's bits alone. Up to 16 receivers near each other look at an eighth of the points each, their
+// neighbours at others, and at all only where these do not agree.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "core/area_lamps.hpp"
 #include "core/texel_records.hpp"
+#include "lichtveld/lightfield/directions.hpp"
 #include "lichtveld/lightfield/light_field.hpp"
 #include "lichtveld/scene/ray_index.hpp"
 #include "lichtveld/scene/scene.hpp"
@@ -24,8 +27,9 @@ class LampLight {
   static constexpr std::size_t most_lamps = 64;
   static constexpr std::uint64_t bytes_a_lamp = 40;  // two irradiances, two masks
 
-  // All of these must outlive it. `receivers`: where light arrives.
-  LampLight(const scene::RayIndex& index, const scene::Scene& scene, std::span<const TexelRecord> receivers);
+  // All of these must outlive it. `receivers`: where light arrives, on an atlas of size * size texels.
+  LampLight(const scene::RayIndex& index, const scene::Scene& scene, std::span<const TexelRecord> receivers,
+            std::uint32_t size);
 
   // Bodies are where `offsets` say; `moves`: since the last time.
   void light(const scene::Offsets& offsets, const Moves& moves);
@@ -50,22 +54,34 @@ class LampLight {
     std::vector<std::vector<std::vector<Hidden>>> hidden;  // by body, then by the receivers' body
   };
 
+  // Receivers that follow each other in order_.
+  struct Block : Range {
+    scene::Box box = {};  // around their places, bodies at rest [m]
+  };
+  static constexpr std::uint32_t most_receivers = 16;  // of a block
+  using BlockBits = std::array<Bits, most_receivers>;  // of each of its receivers
+
+  void find_blocks(std::uint32_t size);
   // True for each receiver to which another light may arrive now.
   std::vector<char> light(Lamp& lamp, const Moves& moves);
-  void find_own(Lamp& lamp, std::uint32_t receiver) const;
-  std::vector<Hidden> find_hidden(const Lamp& lamp, std::uint32_t body, std::uint32_t receivers) const;
+  void find_own(Lamp& lamp, std::uint32_t body, const Block& block) const;
+  std::vector<Hidden> find_hidden(const Lamp& lamp, std::uint32_t body, std::uint32_t of) const;
+  void find_hidden(const Lamp& lamp, std::uint32_t body, std::uint32_t of, const Block& block,
+                   std::vector<Hidden>& found) const;
+  Bits shining(const Lamp& lamp, std::uint32_t receiver) const;
+  BlockBits hidden(const Lamp& lamp, std::uint32_t body, const Block& block, const BlockBits& looked_at,
+                   const BlockBits& may_be) const;
+  glm::vec3 start(std::uint32_t receiver) const;
+  bool contact(std::uint32_t receiver, std::uint32_t body) const;
   glm::vec3 arriving(const Lamp& lamp, std::uint32_t receiver) const;
   float share_seen(const Lamp& lamp, std::uint32_t receiver, Bits some) const;
-  class Search;
-  void find_hidden(const Lamp& lamp, std::uint32_t body, std::uint32_t receiver, Search& search,
-                   std::vector<Hidden>& found) const;
-  bool contact(std::uint32_t receiver, std::uint32_t body) const;
-  Bits trace(const Lamp& lamp, std::uint32_t receiver, std::uint32_t body, Bits wanted) const;
 
   const scene::RayIndex& index_;
   const scene::Scene& scene_;
   std::span<const TexelRecord> receivers_;
-  std::vector<std::vector<std::uint32_t>> of_body_;  // receivers
+  std::vector<std::uint32_t> order_;  // of receivers: body by body
+  std::vector<Block> blocks_;
+  std::vector<Range> blocks_of_body_;
   scene::Offsets offsets_;
   std::vector<Lamp> lamps_;
   std::vector<glm::vec3> irradiance_;

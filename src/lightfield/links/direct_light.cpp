@@ -40,7 +40,7 @@ DirectLight::DirectLight(const gpu::Device& device, const scene::Scene& scene, c
   std::ranges::fill(irradiance_.as<glm::vec4>(), glm::vec4(0));
   if (way == Direct::exact) {
     index_ = std::make_unique<scene::RayIndex>(scene);
-    exact_.emplace(*index_, scene, records_.all());
+    exact_.emplace(*index_, scene, records_.all(), records_.size());
   }
   gpu::Frame frame(device);
   frame.clear("direct_light", sums_);

@@ -10,8 +10,7 @@
 
 #include "lichtveld/lightfield/light_field.hpp"
 #include "lichtveld/scene/ray_index.hpp"
-#include "rays/ray_sets.hpp"
-#include "rays/rows.hpp"
+#include "rays/ray_search.hpp"
 
 namespace lichtveld::lightfield {
 
@@ -38,39 +37,24 @@ class RayLinks {
   const std::array<std::uint32_t, 2>& valid(std::uint32_t row) const { return valid_[row]; }
   // Of these, those that meet nothing.
   std::uint32_t misses(std::uint32_t row) const { return misses_[row]; }
-  std::uint32_t rays() const { return sets_.rays(); }
-  std::uint32_t nothing() const { return rows_.count(); }
-  std::uint32_t outside() const { return rows_.count() + 1; }
+  std::uint32_t rays() const { return search_.rays(); }
+  std::uint32_t nothing() const { return search_.nothing(); }
+  std::uint32_t outside() const { return search_.outside(); }
 
   // The rows of which a link has changed with the last move, ascending.
   const std::vector<std::uint32_t>& changed() const { return changed_; }
   // Whether something lies on the row, by the middle of its texel: whoever sees it sees a part beside that.
   bool buried(std::uint32_t row) const { return buried_[row] != 0; }
-  // Whether it lies there without a gap, so that nothing at all arrives.
-  bool covered(std::uint32_t row) const { return distances(row).front() == 0; }
 
  private:
-  // A ray that meets a body before it meets what stands still.
-  struct Cover {
-    std::size_t ray;  // row * rays() + number
-    std::uint32_t seen;
-    float distance;  // [m]
-  };
-  using Covers = std::vector<Cover>;  // ray by ray
-
+  // Whether something lies on the row without a gap, so that nothing at all arrives.
+  bool covered(std::uint32_t row) const { return distances(row).front() == 0; }
   void find_own(std::uint32_t body);
-  void find_own(const Rows::Packet& packet, std::uint32_t body);
-  std::uint32_t seen(const scene::HitPacket& hits, std::uint32_t lane) const;
-  bool contact(std::uint32_t row, std::uint32_t body) const;
-  Covers find_covers(std::uint32_t body, std::uint32_t receiver) const;
-  class Search;
   void uncover(const Covers& covers);
   void cover(const Covers& covers, bool anew);
 
-  const scene::RayIndex& index_;
-  const scene::Scene& scene_;
   const Rows& rows_;
-  const RaySets& sets_;
+  const RaySearch search_;
   scene::Offsets offsets_;
   std::vector<std::uint32_t> own_, seen_;       // without bodies but the row's own, and with all
   std::vector<float> own_distance_, distance_;  // [m]

@@ -33,7 +33,7 @@ Rays::Rays(const gpu::Device& device, const scene::Scene& scene, const Settings&
       sets_(settings.psf / 2, settings.rays.sets, settings.seed),
       links_(*index_, scene, rows_, sets_),
       filter_(rows_, links_, side_of(settings.rays.sets)),
-      lamps_(*index_, scene, rows_.all()),
+      lamps_(*index_, scene, rows_.all(), settings.size),
       gather_(rows_, links_, settings.direct.value_or(Direct::exact)),
       averages_(rows_.count()),
       irradiance_(std::size_t{settings.size} * settings.size, glm::vec4(0)) {}

@@ -48,7 +48,7 @@ Thesis::Thesis(const gpu::Device& device, const scene::Scene& scene, const Setti
                 gpu::Memory::host) {
   if (settings.direct != Direct::exact) return;
   index_ = std::make_unique<scene::RayIndex>(scene);
-  lamps_.emplace(*index_, scene, records_.all());
+  lamps_.emplace(*index_, scene, records_.all(), records_.size());
 }
 
 // Algorithm 1. Whatever is known of before, it is computed afresh.
