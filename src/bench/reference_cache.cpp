@@ -139,13 +139,7 @@ reference::Irradiance ReferenceCache::traced(const scene::Scene& scene, const st
   }
   spdlog::info("tracing the reference of {}: {} texels a side, {} paths a texel", scene_file.string(),
                settings.size, settings.spp);
-  auto next_report = std::chrono::seconds(10);
-  const auto start = std::chrono::steady_clock::now();
-  auto light = reference::trace(scene, offsets, settings, [&](double share, std::chrono::seconds left) {
-    if (std::chrono::steady_clock::now() - start < next_report) return;
-    next_report += std::chrono::seconds(10);
-    spdlog::info("{:3.0f} %, {} s left", 100 * share, left.count());
-  });
+  auto light = reference::trace(scene, offsets, settings);
   if (cached) keep(file, packed(key, light));
   return light;
 }

@@ -10,6 +10,7 @@
 
 #include "lichtveld/lightfield/directions.hpp"
 #include "lichtveld/lightfield/engine.hpp"
+#include "lichtveld/progress/progress.hpp"
 #include "lichtveld/scene/lights.hpp"
 
 namespace lichtveld::bench {
@@ -89,9 +90,11 @@ void warm_up(const std::vector<Row>& rows, const gpu::Device& device, const scen
 // Whole rounds, so that a disturbance of the machine does not fall on one row alone.
 void measure_all(std::vector<Row>& rows, const std::vector<Truth>& truths, const gpu::Device& device,
                  const scene::Scene& scene, const SweepOptions& options) {
+  progress::Work work("measurements", options.repeats * rows.size());
   warm_up(rows, device, scene);
   for (std::uint32_t repeat = 0; repeat < options.repeats; ++repeat)
     for (auto& row : rows) {
+      work.done();
       if (std::accumulate(row.total_ms.begin(), row.total_ms.end(), 0.0) > long_enough) continue;
       measure(row, device, scene);
       compare(row, truths);

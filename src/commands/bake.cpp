@@ -7,6 +7,7 @@
 
 #include "command_list.hpp"
 #include "lichtveld/files/output.hpp"
+#include "lichtveld/progress/progress.hpp"
 #include "lichtveld/scene/atlas.hpp"
 #include "lichtveld/stream/encoder.hpp"
 
@@ -62,6 +63,7 @@ void bake(const BakeOptions& options) {
   if (options.dump_psf >= options.settings.psf)
     throw UsageError("--dump-psf " + std::to_string(options.dump_psf) + ": the directions are numbered 0.." +
                      std::to_string(options.settings.psf - 1));
+  const progress::Work work("bake");
   BakeJob job{.scene = scene::load(options.scene), .moves = {}};
   scene::check_atlas(job.scene, options.settings.size);
   for (const auto& text : options.moves) job.moves.push_back(parse_move(text, job.scene));

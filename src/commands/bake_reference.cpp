@@ -15,9 +15,7 @@ Baked bake_reference(const BakeOptions& options, const BakeJob& job) {
                                      .spp = options.spp,
                                      .seed = options.settings.seed};
   const auto start = std::chrono::steady_clock::now();
-  auto traced = reference::trace(job.scene, job.moved(), settings, [](double share, std::chrono::seconds left) {
-    spdlog::info("{:3.0f} %, {} s left", 100 * share, left.count());
-  });
+  auto traced = reference::trace(job.scene, job.moved(), settings);
   const std::chrono::duration<double, std::milli> total = std::chrono::steady_clock::now() - start;
 
   Baked baked{.size = settings.size, .irradiance = traced.texels, .shown = {}, .report = {}};

@@ -5,6 +5,7 @@
 #include "lichtveld/commands/commands.hpp"
 #include "lichtveld/files/output.hpp"
 #include "options.hpp"
+#include "progress_shown.hpp"
 #include "version.hpp"
 
 namespace lichtveld::commands {
@@ -59,6 +60,7 @@ int run(int argc, char** argv) {
   add_serve(application);
   add_bench(application);
   add_info(application);
+  const ProgressShown shown;
   return parse_and_run(application, argc, argv);
 }
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "lichtveld/lightfield/directions.hpp"
+#include "lichtveld/progress/progress.hpp"
 #include "lichtveld/scene/atlas.hpp"
 #include "lichtveld/scene/motion.hpp"
 
@@ -132,12 +133,14 @@ Forecast::Forecast(const Engine& engine, const gpu::Device& device, const scene:
 
 // Cheapest first, as far as they go.
 std::vector<Forecast::Trial> Forecast::try_all() const {
+  progress::Work work("trials", std::size(sizes_tried) * std::size(directions_tried));
   std::vector<Trial> trials;
   for (const auto size : sizes_tried)
     for (const auto psf : directions_tried) {
       if (stopped_() || (!trials.empty() && trials.back().first_ms > long_trial.count())) return trials;
       try {
         trials.push_back(try_out({size, psf}));
+        work.done();
       } catch (const std::runtime_error&) {  // larger ones do not fit either
         return trials;
       }

@@ -5,13 +5,13 @@
 #include <array>
 #include <atomic>
 #include <cmath>
-#include <condition_variable>
 #include <limits>
 #include <mutex>
 #include <stdexcept>
 #include <string>
 #include <thread>
 
+#include "lichtveld/progress/progress.hpp"
 #include "lichtveld/scene/atlas.hpp"
 #include "path.hpp"
 
@@ -53,29 +53,6 @@ Estimate estimate(const PathTracer& tracer, const Receiver& texel, std::uint32_t
   return {sum / static_cast<double>(settings.spp), static_cast<float>(error)};
 }
 
-// What the threads share. Each texel is one thread's alone, so that their number changes no result.
-struct Work {
-  std::atomic<std::size_t> next = 0, done = 0;
-  std::mutex mutex;
-  std::condition_variable finished;
-  std::uint32_t running = 0;  // threads
-  RayCount count;
-};
-
-void report_until_finished(Work& work, std::size_t texels, const Progress& progress) {
-  const auto start = std::chrono::steady_clock::now();
-  std::unique_lock lock(work.mutex);
-  while (!work.finished.wait_for(lock, std::chrono::seconds(1), [&] { return work.running == 0; })) {
-    const std::size_t done = work.done;
-    if (!progress || done == 0) continue;
-    const double share = static_cast<double>(done) / static_cast<double>(texels);
-    const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - start;
-    lock.unlock();
-    progress(share, std::chrono::ceil<std::chrono::seconds>(passed * ((1 - share) / share)));
-    lock.lock();
-  }
-}
-
 }  // namespace
 
 void check(const Settings& settings) {
@@ -89,8 +66,7 @@ void check(const Settings& settings) {
     throw std::invalid_argument("0 bounces: 1 is direct light alone, 2 adds one reflection");
 }
 
-Irradiance trace(const scene::Scene& scene, const std::vector<glm::vec3>& offsets, const Settings& settings,
-                 const Progress& progress) {
+Irradiance trace(const scene::Scene& scene, const std::vector<glm::vec3>& offsets, const Settings& settings) {
   check(settings);
   for (const glm::vec3& offset : offsets)
     if (!std::isfinite(offset.x + offset.y + offset.z))
@@ -104,32 +80,28 @@ Irradiance trace(const scene::Scene& scene, const std::vector<glm::vec3>& offset
   result.standard_error.resize(result.texels.size(), 0);
   result.texels_valid = static_cast<std::uint32_t>(texels.size());
 
-  Work work;
-  const auto trace_texels = [&](const std::stop_token& stop) {
+  progress::Work work("tracing paths", texels.size());
+  std::atomic<std::size_t> next = 0;
+  std::mutex mutex;
+  // Each texel is one thread's alone, so that their number changes no result.
+  const auto trace_texels = [&] {
     RayCount count;
-    for (std::size_t i; !stop.stop_requested() && (i = work.next++) < texels.size(); ++work.done) {
+    for (std::size_t i; (i = next++) < texels.size(); work.done()) {
       const auto& [index, hit] = texels[i];
       const Estimate texel =
           estimate(tracer, geometry.receiver(scene::pulled_inside(hit)), index, settings, count);
       result.texels[index] = glm::vec4(texel.irradiance, 1);
       result.standard_error[index] = texel.standard_error;
     }
-    const std::lock_guard lock(work.mutex);
-    work.count.rays += count.rays;
-    work.count.misses += count.misses;
-    if (--work.running == 0) work.finished.notify_one();
+    const std::lock_guard lock(mutex);
+    result.rays += count.rays;
+    result.misses += count.misses;
   };
-
   const std::uint32_t threads =
       settings.threads > 0 ? settings.threads : std::max(1u, std::thread::hardware_concurrency());
-  work.running = threads;
-  {
-    std::vector<std::jthread> workers;
-    for (std::uint32_t i = 0; i < threads; ++i) workers.emplace_back(trace_texels);
-    report_until_finished(work, texels.size(), progress);
-  }
-  result.rays = work.count.rays;
-  result.misses = work.count.misses;
+  std::vector<std::jthread> workers;
+  for (std::uint32_t i = 0; i < threads; ++i) workers.emplace_back(trace_texels);
+  workers.clear();
   return result;
 }
 

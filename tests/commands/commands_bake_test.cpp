@@ -4,6 +4,7 @@
 #include <OpenImageIO/imageio.h>
 #include <gmock/gmock.h>
 
+#include <csignal>
 #include <nlohmann/json.hpp>
 
 #include "commands_run.hpp"
@@ -17,6 +18,7 @@ using ::testing::AllOf;
 using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
 using ::testing::MatchesRegex;
+using ::testing::Not;
 
 class Bake : public ::testing::Test {
  protected:
@@ -262,6 +264,29 @@ TEST_F(Bake, DumpsEveryPass) {
   for (const char* stage : {"geometry_texture.position", "emit_radiance.layer0",
                             "stencil_routing.psf_irradiance", "blend.total_irradiance", "brdf.radiance"})
     EXPECT_TRUE(std::filesystem::exists(folder_.path() / "dump" / (std::string(stage) + ".exr"))) << stage;
+}
+
+// A minute and more of paths, ended after some seconds by what Ctrl-C sends.
+Ran interrupted(const TempFolder& folder, const std::string& seconds, bool on_terminal) {
+  const std::string bake = LICHTVELD_BINARY " bake " + cornell + " --method reference --spp 1000000 --out " +
+                           (folder.path() / "e.exr").string() + " --report " +
+                           (folder.path() / "r.json").string();
+  return shell("timeout --preserve-status -s INT " + seconds +
+               (on_terminal ? " script -qec '" + bake + "' /dev/null" : " " + bake) + " 2>&1 </dev/null");
+}
+
+TEST_F(Bake, LongOnesSayHowFarTheyAreAndEndAtOnceWhenInterrupted) {
+  const auto ran = interrupted(folder_, "6", false);
+  EXPECT_EQ(ran.status, 128 + SIGINT) << ran.output;
+  EXPECT_LT(ran.seconds, 7);
+  EXPECT_THAT(ran.output, ContainsRegex("tracing paths, [0-9]+ %(, about [0-9]+ (s|min) left)?"));
+  EXPECT_THAT(ran.output, Not(HasSubstr("["))) << "a bar is for terminals";
+  EXPECT_TRUE(std::filesystem::is_empty(folder_.path()));
+}
+
+TEST_F(Bake, ABarIsDrawnOnATerminal) {
+  const auto ran = interrupted(folder_, "4", true);
+  EXPECT_THAT(ran.output, ContainsRegex("\\[[#.]+\\] tracing paths, [0-9]+ %"));
 }
 
 TEST(Info, ListsDevicesAndWhatASceneNeeds) {

@@ -171,21 +171,6 @@ TEST(ReferenceRules, FewPathsAndOddCountsWork) {
   }
 }
 
-TEST(ReferenceRules, ProgressGrowsAndCanEndATrace) {
-  const auto scene = furnace(0.9f);
-  double last = 0;
-  EXPECT_THROW(trace(scene, {}, {.size = 64, .spp = 20000},
-                     [&](double share, std::chrono::seconds left) {
-                       EXPECT_GT(share, last);
-                       EXPECT_LT(share, 1);
-                       EXPECT_GT(left.count(), 0);
-                       if (last > 0) throw std::runtime_error("enough");
-                       last = share;
-                     }),
-               std::runtime_error);
-  EXPECT_GT(last, 0);
-}
-
 TEST(ReferenceRules, SettingsOutOfRangeAreRefusedByName) {
   const auto scene = furnace(0.5f);
   const auto refusal = [&](const Settings& settings,

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "core/parallel.hpp"
+#include "lichtveld/progress/progress.hpp"
 #include "lichtveld/scene/ray_queue.hpp"
 #include "lichtveld/scene/slabs.hpp"
 
@@ -126,9 +127,11 @@ void LampLight::find_blocks(std::uint32_t size) {
 void LampLight::light(const scene::Offsets& offsets, const Moves& moves) {
   offsets_ = offsets;
   std::vector<char> touched(receivers_.size(), 0);
+  progress::Work work("light straight from lamps", lamps_.size());
   for (auto& lamp : lamps_) {
     const auto by_lamp = light(lamp, moves);
     for (std::size_t i = 0; i < touched.size(); ++i) touched[i] |= by_lamp[i];
+    work.done();
   }
   for_each_index(0, static_cast<std::uint32_t>(receivers_.size()), receivers_of_a_task, [&](std::uint32_t i) {
     if (!touched[i]) return;

@@ -7,6 +7,8 @@
 #include <bit>
 #include <utility>
 
+#include "lichtveld/progress/progress.hpp"
+
 namespace lichtveld::lightfield {
 
 namespace {
@@ -144,6 +146,7 @@ void KeptLinks::route(const std::vector<Patch>& patches, const TileBoxes& tiles,
   const auto pixels = settings_.raster();
   const auto before = solution;
   auto batches = pack(patches, layered().store.extent, tiles);
+  progress::Work work("links", batches.size());
   for (std::size_t batch = 0; batch < batches.size();) {
     auto& counted = counters_.as<shaders::Counters>().front();
     counted = {};
@@ -175,6 +178,7 @@ void KeptLinks::route(const std::vector<Patch>& patches, const TileBoxes& tiles,
     solution.misses += counted.misses;
     solution.rays_unknown += counted.unknown;
     ++batch;
+    work.done();
   }
 }
 

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "core/parallel.hpp"
+#include "lichtveld/progress/progress.hpp"
 
 namespace lichtveld::lightfield {
 
@@ -62,8 +63,10 @@ void RayLinks::link(const scene::Offsets& offsets, const Moves& moves) {
 // What stands still, and the row's own body, which moves with it.
 void RayLinks::find_own(std::uint32_t body) {
   const auto packets = rows_.packets_of_body(body);
+  progress::Work work("links", packets.size());
   for_each_index(packets.first, packets.end, packets_of_a_task, [&](std::uint32_t packet) {
     search_.find_own(rows_.packets()[packet], offsets_, own_, own_distance_, valid_);
+    work.done();
   });
   const auto rows = rows_.of_body(body);
   const auto first = static_cast<std::ptrdiff_t>(std::size_t{rows.first} * rays()),

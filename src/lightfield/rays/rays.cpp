@@ -7,6 +7,7 @@
 #include "core/convergence.hpp"
 #include "core/memory.hpp"
 #include "core/parallel.hpp"
+#include "lichtveld/progress/progress.hpp"
 
 namespace lichtveld::lightfield {
 
@@ -60,6 +61,7 @@ bool Rays::compute(Light before, const Moves& moves, const Enough& enough, Solut
     gather_.find_sources();
     count_rays(solution);
   }
+  const progress::Work work("bounces");
   const bool settled = times.time("bounces", [&] { return converge(before, enough, solution); });
   times.time("average", [&] { finish(); });
   return settled;

@@ -8,6 +8,7 @@
 
 #include "core/convergence.hpp"
 #include "core/psf_view.hpp"
+#include "lichtveld/progress/progress.hpp"
 
 namespace lichtveld::lightfield {
 
@@ -126,11 +127,13 @@ void Thesis::light_by_lamps(const Moves& moves) {
 void Thesis::render_bounce(Solution& solution, bool count) {
   if (count) solution.overflow_pixels = solution.rays = solution.misses = solution.rays_unknown = 0;
   const bool observing = count && observer_ && observed_ < directions_.size();
+  progress::Work work(bounce_label(solution), directions_.size());
   for (std::uint32_t first = 0; first < directions_.size();) {
     auto end = std::min(first + psfs_a_frame, directions_.size());
     if (observing && first <= observed_) end = std::min(end, observed_ + 1);
     render_psfs({first, end}, count, solution);
     if (observing && end == observed_ + 1) show_stages();
+    work.done(end - first);
     first = end;
   }
 }

@@ -2,9 +2,7 @@
 // the other methods are measured against, and the traditional ray tracing that they are compared with.
 #pragma once
 
-#include <chrono>
 #include <cstdint>
-#include <functional>
 #include <glm/glm.hpp>
 #include <optional>
 #include <vector>
@@ -29,17 +27,12 @@ struct Irradiance {
   std::uint64_t rays = 0, misses = 0;  // cosine-distributed ones from texels; those that hit nothing
 };
 
-// The share done, 0..1, and an estimate of the time left. Called at most once a second, on the thread that
-// called trace(). What it throws ends the trace.
-using Progress = std::function<void(double share_done, std::chrono::seconds left)>;
-
 // Throws std::invalid_argument that names the setting out of its range and the range.
 void check(const Settings& settings);
 
 // E with body i shifted by offsets[i] [m]; bodies without an offset have not moved. Throws
 // std::invalid_argument for settings out of their ranges or offsets that are not finite, and std::runtime_error
 // if the scene does not fit into memory.
-Irradiance trace(const scene::Scene& scene, const std::vector<glm::vec3>& offsets, const Settings& settings,
-                 const Progress& progress = {});
+Irradiance trace(const scene::Scene& scene, const std::vector<glm::vec3>& offsets, const Settings& settings);
 
 }  // namespace lichtveld::reference
