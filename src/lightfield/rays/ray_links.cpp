@@ -20,10 +20,10 @@ RayLinks::RayLinks(const scene::RayIndex& index, const scene::Scene& scene, cons
                    const RaySets& sets)
     : rows_(rows),
       search_(index, scene, rows, sets),
-      own_(std::size_t{rows.count()} * sets.rays()),
-      seen_(own_.size()),
-      own_distance_(own_.size()),
-      distance_(own_.size()),
+      own_(std::size_t{rows.count()} * sets.rays(), boost::container::default_init),
+      seen_(own_.size(), boost::container::default_init),
+      own_distance_(own_.size(), boost::container::default_init),
+      distance_(own_.size(), boost::container::default_init),
       covers_(rows.bodies(), std::vector<Covers>(rows.bodies())),
       reset_(own_.size()),
       valid_(rows.count()),
@@ -44,7 +44,8 @@ void RayLinks::link(const scene::Offsets& offsets, const Moves& moves) {
       if (body == receiver) continue;
       const bool anew = moves.has(body) || moves.has(receiver);
       auto& covers = covers_[body][receiver];
-      if (anew) covers = search_.find_covers(body, receiver, offsets_, own_distance_);
+      if (anew)
+        covers = search_.find_covers(body, receiver, offsets_, {own_distance_.data(), own_distance_.size()});
       cover(covers, anew);
     }
   for (const std::size_t ray : uncovered_) reset_[ray] = false;
@@ -65,7 +66,8 @@ void RayLinks::find_own(std::uint32_t body) {
   const auto packets = rows_.packets_of_body(body);
   progress::Work work("links", packets.size());
   for_each_index(packets.first, packets.end, packets_of_a_task, [&](std::uint32_t packet) {
-    search_.find_own(rows_.packets()[packet], offsets_, own_, own_distance_, valid_);
+    search_.find_own(rows_.packets()[packet], offsets_, {own_.data(), own_.size()},
+                     {own_distance_.data(), own_distance_.size()}, valid_);
     work.done();
   });
   const auto rows = rows_.of_body(body);

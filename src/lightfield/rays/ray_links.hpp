@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <boost/container/vector.hpp>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -27,11 +28,11 @@ class RayLinks {
   // Row by row, rays() each: the row that is seen, nothing() where none is, or outside() for rays that would
   // leave below the row's own face and are none.
   std::span<const std::uint32_t> of(std::uint32_t row) const {
-    return std::span(seen_).subspan(std::size_t{row} * rays(), rays());
+    return {seen_.data() + std::size_t{row} * rays(), rays()};
   }
   // How far away that is [m]; infinite where nothing is.
   std::span<const float> distances(std::uint32_t row) const {
-    return std::span(distance_).subspan(std::size_t{row} * rays(), rays());
+    return {distance_.data() + std::size_t{row} * rays(), rays()};
   }
   // How many of the first and of the second half of the rays there are, without those that are none.
   const std::array<std::uint32_t, 2>& valid(std::uint32_t row) const { return valid_[row]; }
@@ -56,9 +57,12 @@ class RayLinks {
   const Rows& rows_;
   const RaySearch search_;
   scene::Offsets offsets_;
-  std::vector<std::uint32_t> own_, seen_;       // without bodies but the row's own, and with all
-  std::vector<float> own_distance_, distance_;  // [m]
-  std::vector<std::vector<Covers>> covers_;     // by body, then by the rows' body
+  // Left as memory is until they are found: of millions of rays each pass over them counts.
+  template <typename T>
+  using OfRays = boost::container::vector<T>;
+  OfRays<std::uint32_t> own_, seen_;         // without bodies but the row's own, and with all
+  OfRays<float> own_distance_, distance_;    // [m]
+  std::vector<std::vector<Covers>> covers_;  // by body, then by the rows' body
   // Rays that a body covered before this move and that have been set free; a bit for each of all, and which.
   std::vector<bool> reset_;
   std::vector<std::size_t> uncovered_;
