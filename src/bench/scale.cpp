@@ -72,6 +72,7 @@ ScaleRow measure(const gpu::Device& device, const std::string& file, std::uint32
   const auto& rays = lightfield::engine(rays_method);
   const auto light = rays.make(device, scene, {.size = size, .psf = rays.psf});
   light->settle();
+  light->shown();
   row.first_ms = milliseconds_since(start);
   row.cube_ms = time_steps(*light, scene, cube);
   row.ball_ms = time_steps(*light, scene, ball);

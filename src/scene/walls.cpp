@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <boost/geometry.hpp>
+#include <boost/geometry/index/rtree.hpp>
 #include <optional>
+#include <utility>
 
 namespace lichtveld::scene {
 namespace {
@@ -60,9 +63,12 @@ std::optional<Wall> wall_on(const Triangle& floor, const Triangle& other, double
   return Wall{glm::vec3(ends[0]), glm::vec3(ends[1]), highest > 0};
 }
 
-bool boxes_meet(const Box& a, const Box& b, float reach) {
-  return glm::all(glm::lessThanEqual(a.min - reach, b.max)) &&
-         glm::all(glm::lessThanEqual(b.min, a.max + reach));
+namespace index = boost::geometry::index;
+using Corner = boost::geometry::model::point<float, 3, boost::geometry::cs::cartesian>;
+using Region = boost::geometry::model::box<Corner>;
+
+Region grown(const Box& box, float by) {
+  return {{box.min.x - by, box.min.y - by, box.min.z - by}, {box.max.x + by, box.max.y + by, box.max.z + by}};
 }
 
 }  // namespace
@@ -71,25 +77,29 @@ Walls find_walls(const Scene& scene, const std::vector<glm::vec3>& offsets, floa
   std::vector<Triangle> triangles;
   for (std::size_t index = 0; index < scene.indices.size() / 3; ++index)
     triangles.push_back(triangle_at(scene, offsets, index));
-  // By their lowest x, so that a search ends where all others begin beyond its reach.
-  std::vector<std::uint32_t> by_x(triangles.size());
-  for (std::uint32_t index = 0; index < by_x.size(); ++index) by_x[index] = index;
-  std::sort(by_x.begin(), by_x.end(),
-            [&](auto a, auto b) { return triangles[a].box.min.x < triangles[b].box.min.x; });
+  std::vector<std::pair<Region, std::uint32_t>> regions;
+  for (const Triangle& triangle : triangles)
+    regions.emplace_back(grown(triangle.box, 0), static_cast<std::uint32_t>(regions.size()));
+  const index::rtree<std::pair<Region, std::uint32_t>, index::linear<16>> tree(regions);
 
+  std::vector<std::uint32_t> near;
   Walls walls;
   walls.first.push_back(0);
   for (const Triangle& floor : triangles) {
+    near.clear();
+    const Region region = grown(floor.box, reach);
     if (floor.normal != glm::dvec3(0))
-      for (const auto index : by_x) {
-        const Triangle& other = triangles[index];
-        if (other.box.min.x > floor.box.max.x + reach) break;
-        if (!boxes_meet(floor.box, other.box, reach) || glm::dot(floor.normal, other.normal) > smooth_cosine)
-          continue;
-        const auto wall = wall_on(floor, other, gap);
-        if (wall && boxes_meet(floor.box, {glm::min(wall->a, wall->b), glm::max(wall->a, wall->b)}, reach))
-          walls.lines.push_back(*wall);
-      }
+      for (auto found = tree.qbegin(index::intersects(region)); found != tree.qend(); ++found)
+        near.push_back(found->second);
+    std::ranges::sort(near);  // however the tree was made
+    for (const auto number : near) {
+      const Triangle& other = triangles[number];
+      if (glm::dot(floor.normal, other.normal) > smooth_cosine) continue;
+      const auto wall = wall_on(floor, other, gap);
+      if (wall && boost::geometry::intersects(
+                      region, grown({glm::min(wall->a, wall->b), glm::max(wall->a, wall->b)}, 0)))
+        walls.lines.push_back(*wall);
+    }
     walls.first.push_back(static_cast<std::uint32_t>(walls.lines.size()));
   }
   return walls;

@@ -72,7 +72,7 @@ class Records : public WithDevice, public ::testing::WithParamInterface<Named> {
   Drawn drawn(const scene::Scene& scene, const TexelRecords& records, const scene::Offsets& offsets) {
     Geometry geometry(device(), scene);
     const LightMap map(device(), records);
-    geometry.place(offsets, records.size());
+    geometry.place(offsets);
     const GeometryTexture geometry_texture(device());
     gpu::Frame frame(device());
     geometry_texture.record(frame, geometry, map, {});

@@ -70,9 +70,11 @@ KeptLinks::KeptLinks(const gpu::Device& device, const scene::Scene& scene, const
 void KeptLinks::link(const scene::Offsets& to, const Moves& moves, Solution& solution) {
   const auto sphere_before = geometry_.sphere;
   gpu::Frame placing(device_, {"links", "place"});
-  geometry_.place(to, settings_.raster());
+  geometry_.place(to);
+  geometry_.find_walls(to, settings_.raster());
   if (moves.all) placing.clear("route_links", map_.cover, {});
   geometry_texture_.record(placing, geometry_, map_, moves);
+  geometry_texture_.find_walls(placing, geometry_, map_);
   layered().received = false;
   placing.submit();                                       // while it is drawn, the host looks up what to route
   done_ = {.linked_at = to, .direct_summed = moves.all};  // the first links of all sum it up

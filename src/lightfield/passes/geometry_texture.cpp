@@ -50,6 +50,9 @@ void GeometryTexture::record(gpu::Frame& frame, const Geometry& geometry, const 
       draw.indexed(surface.first_index, surface.index_count);
     }
   });
+}
+
+void GeometryTexture::find_walls(gpu::Frame& frame, const Geometry& geometry, const LightMap& map) const {
   frame.compute(walls_,
                 {gpu::reads("position", map.position), gpu::reads("face_normal", map.face_normal),
                  gpu::reads("WallsFirst", geometry.walls_first), gpu::fetches("walls", geometry.walls),

@@ -13,6 +13,8 @@ class GeometryTexture {
   explicit GeometryTexture(const gpu::Device& device);
   // Draws what has moved where it is now: into a map that holds the rest, or all of it.
   void record(gpu::Frame& frame, const Geometry& geometry, const LightMap& map, const Moves& moves) const;
+  // Writes `near_walls` from those that the geometry has found.
+  void find_walls(gpu::Frame& frame, const Geometry& geometry, const LightMap& map) const;
   // Writes `shown` from the charts, `source` and `cover`: like `source`, but a texel that other geometry lies
   // on shows its nearest open one too, so that filtering does not draw its black out along that geometry's
   // foot.

@@ -103,11 +103,16 @@ Geometry::Geometry(const gpu::Device& device, const scene::Scene& scene)
   device.name(sampler, "scene/sampler");
 }
 
-void Geometry::place(const scene::Offsets& to, std::uint32_t pixels) {
-  const gpu::TimeLedger::Stage stage(device_.times(), "find_walls");
+void Geometry::place(const scene::Offsets& to) {
   sphere = scene::bounding_sphere(scene, to);
+  const auto places = offsets.as<glm::vec4>();
+  for (std::size_t body = 0; body < to.size(); ++body) places[body] = glm::vec4(to[body], 0);
+}
+
+void Geometry::find_walls(const scene::Offsets& at, std::uint32_t pixels) {
+  const gpu::TimeLedger::Stage stage(device_.times(), "find_walls");
   const float pixel = 2 * sphere.radius / static_cast<float>(pixels);
-  const auto found = scene::find_walls(scene, to, shaders::CONTACT * pixel, wall_reach * pixel);
+  const auto found = scene::find_walls(scene, at, shaders::CONTACT * pixel, wall_reach * pixel);
   std::vector<glm::vec4> ends;
   for (const auto& line : found.lines) {
     ends.emplace_back(line.a, line.rises ? 1 : 0);
@@ -115,8 +120,6 @@ void Geometry::place(const scene::Offsets& to, std::uint32_t pixels) {
   }
   gpu::put<std::uint32_t>(device_, walls_first, found.first);
   gpu::put<glm::vec4>(device_, walls, ends);
-  const auto places = offsets.as<glm::vec4>();
-  for (std::size_t body = 0; body < to.size(); ++body) places[body] = glm::vec4(to[body], 0);
 }
 
 }  // namespace lichtveld::lightfield

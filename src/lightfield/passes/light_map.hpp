@@ -48,9 +48,10 @@ gpu::Image atlas_image(const gpu::Device& device, const char* name, std::uint32_
 struct Geometry {
   Geometry(const gpu::Device& device, const scene::Scene& scene);
 
-  // Shifts body i by to[i] [m] from rest and finds what stands on what, as rasters of `pixels` a side can
-  // tell. Not while a frame is under way.
-  void place(const scene::Offsets& to, std::uint32_t pixels);
+  // Shifts body i by to[i] [m] from rest. Not while a frame is under way, as the next.
+  void place(const scene::Offsets& to);
+  // What stands on what there, as rasters of `pixels` a side can tell.
+  void find_walls(const scene::Offsets& at, std::uint32_t pixels);
 
   const scene::Scene& scene;
   scene::Sphere sphere;  // around all of them at their places

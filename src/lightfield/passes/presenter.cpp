@@ -9,7 +9,7 @@ Presenter::Presenter(const gpu::Device& device, const scene::Scene& scene, const
   // Where bodies are changes nothing of what is shown here: albedo, emission, and which texels face the same
   // way.
   Geometry geometry(device, scene);
-  geometry.place(scene::Offsets(scene.bodies.size(), glm::vec3(0)), map_.size);
+  geometry.place(scene::Offsets(scene.bodies.size(), glm::vec3(0)));
   gpu::Frame frame(device);
   frame.clear("present", map_.cover, {});
   geometry_texture_.record(frame, geometry, map_, {});

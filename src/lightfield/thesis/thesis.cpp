@@ -103,12 +103,14 @@ bool Thesis::done(const Solution& solution) const {
 
 void Thesis::begin(const Moves& moves) {
   if (!layered_) layered_ = std::make_unique<Layered>(device_, settings_, capacity_for(settings_.layers));
-  geometry_.place(offsets(), settings_.raster());
+  geometry_.place(offsets());
+  geometry_.find_walls(offsets(), settings_.raster());
   gpu::Frame frame(device_, {"thesis", "set up"});
   frame.clear("blend", map_.total_irradiance, {});
   if (moves.all) frame.clear("blend", sums_.lamp_irradiance, {});
   clear_bounce(frame);
   geometry_texture_.record(frame, geometry_, map_, moves);
+  geometry_texture_.find_walls(frame, geometry_, map_);
   brdf_.record(frame, map_, !lamps_);
   frame.submit_and_wait();
 }

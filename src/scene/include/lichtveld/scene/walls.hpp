@@ -22,7 +22,7 @@ struct Walls {
 // the side of its NORMAL, as walls do, and blocks that stand on it; or to the other side only, as at the edges
 // of a block's top. What starts up to `gap` above the plane counts as standing on it [m]. Lines farther than
 // `reach` from the triangle are left out [m]; so are surfaces that it bends into smoothly, by less than 45
-// degrees. Body i is shifted by offsets[i] [m]. Costs pairs of triangles whose boxes are within `reach`.
+// degrees. Body i is shifted by offsets[i] [m]. Costs the pairs of triangles whose boxes are within `reach`.
 Walls find_walls(const Scene& scene, const std::vector<glm::vec3>& offsets, float gap, float reach);
 
 }  // namespace lichtveld::scene
