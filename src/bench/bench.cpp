@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "lamps.hpp"
 #include "lichtveld/files/output.hpp"
 #include "lichtveld/scene/atlas.hpp"
 #include "pass_table.hpp"
@@ -80,7 +81,7 @@ void write_charts(const SweepResult& result, const fs::path& out) {
 
 Bench::Bench(Options options) : options_(std::move(options)) {
   check_all(options_);
-  for (const auto& file : options_.scale ? std::vector<std::string>() : options_.scenes) {
+  for (const auto& file : options_.own_rooms() ? std::vector<std::string>() : options_.scenes) {
     scenes_.push_back({fs::path(file).stem().string(), scene::load(file)});
     for (const auto size : options_.sweep.sizes) scene::check_atlas(scenes_.back().scene, size);
   }
@@ -98,8 +99,18 @@ void Bench::run(const gpu::Device& device) const {
     return;
   }
 
+  if (options_.lamps) {
+    const auto result = compare_lamps(device, options_.sweep, cache);
+    files::write_text(out / "lamps.csv", chart_csv(result.rows));
+    warn_of_noise(result);
+    plot_lamps(result, out);
+    plot_error_maps(result, result.rows.back().scene, out);
+    return;
+  }
+
   SweepResult result;
-  for (const auto& [name, scene] : scenes_) append(result, sweep(device, scene, name, options_.sweep, cache));
+  for (const auto& [name, scene] : scenes_)
+    append(result, sweep(device, scene, name, rows_of(name, options_.sweep), options_.sweep, cache));
   write_charts(result, out);
   for (const auto& [name, scene] : scenes_) plot_error_maps(result, name, out);
 

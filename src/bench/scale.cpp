@@ -7,7 +7,6 @@
 
 #include <array>
 #include <chrono>
-#include <filesystem>
 #include <fstream>
 #include <set>
 #include <thread>
@@ -18,6 +17,7 @@
 #include "lichtveld/scene/motion.hpp"
 #include "row.hpp"
 #include "scale_room.hpp"
+#include "temporary_file.hpp"
 
 namespace lichtveld::bench {
 
@@ -84,19 +84,12 @@ ScaleRow measure(const gpu::Device& device, const std::string& file, std::uint32
 
 std::vector<ScaleRow> time_scale(const gpu::Device& device, std::uint32_t size) {
   const std::set<std::uint32_t> cores = {1, std::max(std::thread::hardware_concurrency(), 1u)};
-  const auto file = std::filesystem::temp_directory_path() / fmt::format("lichtveld-scale-{}.glb", getpid());
-  const struct Removal {
-    const std::filesystem::path& file;
-    ~Removal() {
-      std::error_code ignored;
-      std::filesystem::remove(file, ignored);
-    }
-  } removal{file};
+  const TemporaryFile file("scale.glb");
   std::vector<ScaleRow> rows;
   for (const auto triangles : triangle_counts) {
-    files::write_text(file, scale_room(triangles));
+    files::write_text(file.path(), scale_room(triangles, 0.15f));
     for (const auto some : cores) {
-      rows.push_back(measure(device, file.string(), triangles, some, size));
+      rows.push_back(measure(device, file.path().string(), triangles, some, size));
       spdlog::info("{} triangles on {} cores: first map after {:.0f} ms", triangles, some,
                    rows.back().load_ms + rows.back().first_ms);
     }

@@ -128,7 +128,7 @@ class Room {
 
 }  // namespace
 
-std::string scale_room(std::uint32_t triangles) {
+std::string scale_room(std::uint32_t triangles, float lamp) {
   constexpr float pi = std::numbers::pi_v<float>;
   Room room;
   const int grey = room.material(glm::vec3(0.6f));
@@ -140,9 +140,10 @@ std::string scale_room(std::uint32_t triangles) {
     return glm::vec3(-2 + 4 * at.y, height, -2 + 4 * at.x);
   });
   room.node("floor", room.material({0.7f, 0.6f, 0.5f}));
+  const float wide = 3.9f * lamp;
   room.grid(1, 1, {0.51f, 0.76f, 0.05f, 0.05f},
-            [](const glm::vec2& at) { return glm::vec3(-0.3f + 0.6f * at.x, 2.9f, -0.3f + 0.6f * at.y); });
-  room.node("lamp", room.material(glm::vec3(0.5f), 12));
+            [&](const glm::vec2& at) { return glm::vec3(wide * (at.x - 0.5f), 2.9f, wide * (at.y - 0.5f)); });
+  room.node("lamp", room.material(glm::vec3(0.5f), 4 / (wide * wide)));
   room.box({-0.8f, 0.3f, -0.6f}, {-0.3f, 0.8f, -0.1f}, {0.51f, 0.51f, 0.24f, 0.24f}, false);
   room.node("cube", grey, true);
   room.grid(50, 50, {0.01f, 0.51f, 0.2f, 0.1f}, [](const glm::vec2& at) {

@@ -179,7 +179,7 @@ bool is_dark(const scene::Scene& scene) {
 }
 
 SweepResult sweep(const gpu::Device& device, const scene::Scene& scene, const std::string& name,
-                  const SweepOptions& options, const ReferenceCache& cache) {
+                  std::vector<Row> rows, const SweepOptions& options, const ReferenceCache& cache) {
   SweepResult result;
   if (is_dark(scene))
     spdlog::warn("{}: nothing glows, so errors, which are shares of the mean, mean nothing: times alone",
@@ -189,7 +189,7 @@ SweepResult sweep(const gpu::Device& device, const scene::Scene& scene, const st
       for (const auto size : options.sizes)
         result.truths.push_back(trace_truth(scene, name, size, bounces, options.truth_spp, cache));
 
-  result.rows = rows_of(name, options);
+  result.rows = std::move(rows);
   measure_all(result.rows, result.truths, device, scene, options);
   for (const auto& truth : result.truths)
     for (const auto spp : options.path_spps) result.rows.push_back(trace_paths(scene, truth, spp));

@@ -37,8 +37,8 @@ lightfield::Settings curve_settings(lightfield::ABuffer abuffer, std::uint32_t s
 
 bool is_dark(const scene::Scene& scene);  // nothing glows, and errors would be shares of nothing
 
-// Measures them. `name` is the scene's in the tables. A dark scene has no truth and no errors.
+// Measures rows. `name` is the scene's in the tables. A dark scene has no truth and no errors.
 SweepResult sweep(const gpu::Device& device, const scene::Scene& scene, const std::string& name,
-                  const SweepOptions& options, const ReferenceCache& cache);
+                  std::vector<Row> rows, const SweepOptions& options, const ReferenceCache& cache);
 
 }  // namespace lichtveld::bench

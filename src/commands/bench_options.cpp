@@ -115,6 +115,11 @@ void add_bench_options(CLI::App& command, BenchOptions& options) {
       "--scale", options.bench.scale,
       "Instead: what rays cost in rooms of 1,000 to 1,000,000 triangles, on one core and on all, at the "
       "last --size");
+  command
+      .add_flag("--lamps", options.bench.lamps,
+                "Instead: how near each method comes by how large the lamp is, from the whole ceiling to a "
+                "candle, at the last --size")
+      ->excludes("--scale");
   add_counts(command, "--size", sweep.sizes, usual.sizes, quick.sizes, "Texels a side, 16..4096");
   add_counts(command, "--psf", sweep.psfs, usual.psfs, quick.psfs,
              "Directions: " + lightfield::direction_counts_text());

@@ -29,6 +29,8 @@ struct Query : scene::QueryContext {
   const Geometry& geometry;
   const Receiver& from;
   float behind;  // how far behind its receiver the ray starts
+  // What lies on the receiver counts; backs of one-sided surfaces do.
+  bool contact = true, backs = false;
 };
 
 // Passes through backs of one-sided surfaces, through the receiver's own triangle, and through what is behind
@@ -40,8 +42,9 @@ void refuse_unseen(const RTCFilterFunctionNArguments* arguments) {
                             RTCRayN_dir_y(arguments->ray, arguments->N, 0),
                             RTCRayN_dir_z(arguments->ray, arguments->N, 0));
   const bool before_receiver = RTCRayN_tfar(arguments->ray, arguments->N, 0) <= query.behind;
-  const bool lies_on_it = glm::dot(query.geometry.face(triangle), query.from.face) < -facing_cosine;
-  if (triangle == query.from.triangle || query.geometry.is_transparent(triangle, direction) ||
+  const bool lies_on_it =
+      query.contact && glm::dot(query.geometry.face(triangle), query.from.face) < -facing_cosine;
+  if (triangle == query.from.triangle || (!query.backs && query.geometry.is_transparent(triangle, direction)) ||
       (before_receiver && !lies_on_it))
     arguments->valid[0] = 0;
 }
@@ -61,6 +64,26 @@ void fill(RTCGeometry target, RTCBufferType type, RTCFormat format, std::size_t 
   void* buffer = rtcSetNewGeometryBuffer(target, type, 0, format, bytes, source.size() * sizeof(T) / bytes);
   require_success(device, geometry);
   std::copy(source.begin(), source.end(), static_cast<T*>(buffer));
+}
+
+RTCRayHit traced(RTCScene scene, Query& query, const glm::vec3& direction) {
+  const glm::vec3 start = query.from.position - query.behind * direction;
+  RTCRayHit ray{};
+  ray.ray.org_x = start.x;
+  ray.ray.org_y = start.y;
+  ray.ray.org_z = start.z;
+  ray.ray.dir_x = direction.x;
+  ray.ray.dir_y = direction.y;
+  ray.ray.dir_z = direction.z;
+  ray.ray.tfar = std::numeric_limits<float>::infinity();
+  ray.ray.mask = ~0u;
+  ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  scene::intersect(scene, query, ray);
+  return ray;
+}
+
+bool hits(const RTCRayHit& ray) {
+  return ray.hit.geomID != RTC_INVALID_GEOMETRY_ID;
 }
 
 }  // namespace
@@ -88,21 +111,23 @@ EmbreeScene::EmbreeScene(const Geometry& geometry)
 
 std::optional<Hit> EmbreeScene::nearest(const Receiver& from, const glm::vec3& direction) const {
   const float back = start_behind / std::max(glm::dot(direction, from.face), grazing_cosine);
-  const glm::vec3 start = from.position - back * direction;
-  RTCRayHit ray{};
-  ray.ray.org_x = start.x;
-  ray.ray.org_y = start.y;
-  ray.ray.org_z = start.z;
-  ray.ray.dir_x = direction.x;
-  ray.ray.dir_y = direction.y;
-  ray.ray.dir_z = direction.z;
-  ray.ray.tfar = std::numeric_limits<float>::infinity();
-  ray.ray.mask = ~0u;
-  ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   Query query(geometry_, from, back);
-  scene::intersect(scene_.get(), query, ray);
-  if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
+  auto ray = traced(scene_.get(), query, direction);
+  if (hits(ray) && ray.ray.tfar <= back && is_one_sheet(from, ray.hit.primID)) {
+    query.contact = false;
+    ray = traced(scene_.get(), query, direction);
+  }
+  if (!hits(ray)) return std::nullopt;
   return Hit{ray.hit.primID, {ray.hit.u, ray.hit.v}};
+}
+
+bool EmbreeScene::is_one_sheet(const Receiver& from, std::uint32_t triangle) const {
+  if (!scene::of_one_node(geometry_.scene(), from.triangle, triangle)) return false;
+  Query query(geometry_, from, start_behind);
+  query.contact = false;
+  query.backs = true;
+  const auto ray = traced(scene_.get(), query, from.face);
+  return !hits(ray) || glm::dot(geometry_.face(ray.hit.primID), from.face) <= 0;
 }
 
 }  // namespace lichtveld::reference

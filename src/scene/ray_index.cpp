@@ -1,6 +1,7 @@
 #include "lichtveld/scene/ray_index.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,7 @@ struct Part {
 struct Query : QueryContext {
   Query() { init(*this); }
   const glm::vec3* face = nullptr;  // of the receiver; null for rays that look for anything
+  bool backs = false;               // of one-sided triangles count, too
   std::uint32_t triangle = 0;
 };
 
@@ -40,13 +42,14 @@ void refuse_all_but_contact(const RTCFilterFunctionNArguments& of, const Query& 
 }
 
 void refuse_backs(const RTCFilterFunctionNArguments* of) {
+  const auto& query = *static_cast<const Query*>(of->context);
+  if (query.backs) return;
   for (unsigned int i = 0; i < of->N; ++i) {
     const float facing = RTCHitN_Ng_x(of->hit, of->N, i) * RTCRayN_dir_x(of->ray, of->N, i) +
                          RTCHitN_Ng_y(of->hit, of->N, i) * RTCRayN_dir_y(of->ray, of->N, i) +
                          RTCHitN_Ng_z(of->hit, of->N, i) * RTCRayN_dir_z(of->ray, of->N, i);
     if (facing >= 0) of->valid[i] = 0;
   }
-  const auto& query = *static_cast<const Query*>(of->context);
   if (query.face) refuse_all_but_contact(*of, query);
 }
 
@@ -177,7 +180,7 @@ void RayIndex::Trees::add(RTCScene tree, Part& part, bool double_sided, const Sc
   rtcAttachGeometryByID(tree, geometry.get(), double_sided);
 }
 
-RayIndex::RayIndex(const Scene& scene) {
+RayIndex::RayIndex(const Scene& scene) : scene_(scene) {
   const Sphere sphere = bounding_sphere(scene);
   centre_ = sphere.centre;
   skin_ = skin_of_radius * sphere.radius;
@@ -231,22 +234,34 @@ bool RayIndex::may_meet_own_body(std::uint32_t triangle, const glm::vec3& face) 
 
 bool RayIndex::contact(std::uint32_t body, const glm::vec3& offset, const glm::vec3& place,
                        const glm::vec3& face, std::uint32_t triangle) const {
-  const glm::vec3 start = place - (centre_ + offset) - skin_ * face;
-  RTCRayHit query{};
-  query.ray.org_x = start.x;
-  query.ray.org_y = start.y;
-  query.ray.org_z = start.z;
-  query.ray.dir_x = face.x;
-  query.ray.dir_y = face.y;
-  query.ray.dir_z = face.z;
-  query.ray.tfar = 2 * skin_;
-  query.ray.mask = ~0u;
-  query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  const glm::vec3 surface = place - (centre_ + offset);
   Query context;
+  const auto look = [&](const glm::vec3& start, float reach) {
+    RTCRayHit query{};
+    query.ray.org_x = start.x;
+    query.ray.org_y = start.y;
+    query.ray.org_z = start.z;
+    query.ray.dir_x = face.x;
+    query.ray.dir_y = face.y;
+    query.ray.dir_z = face.z;
+    query.ray.tfar = reach;
+    query.ray.mask = ~0u;
+    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    intersect(trees_->of_body(body), context, query);
+    return query.hit;
+  };
   context.face = &face;
   context.triangle = triangle;
-  intersect(trees_->of_body(body), context, query);
-  return query.hit.geomID != RTC_INVALID_GEOMETRY_ID;
+  const RTCHit on_it = look(surface - skin_ * face, 2 * skin_);
+  if (on_it.geomID == RTC_INVALID_GEOMETRY_ID) return false;
+  if (!of_one_node(scene_, triangle, trees_->parts[body][on_it.geomID].triangles[on_it.primID])) return true;
+  // Two faces of a node on each other are where something of it stands on something else of it, if one leaves
+  // that going on, and a sheet of two sides if not.
+  context.face = nullptr;
+  context.backs = true;
+  const RTCHit next = look(surface + 2 * skin_ * face, std::numeric_limits<float>::infinity());
+  return next.geomID != RTC_INVALID_GEOMETRY_ID &&
+         next.Ng_x * face.x + next.Ng_y * face.y + next.Ng_z * face.z > 0;
 }
 
 }  // namespace lichtveld::scene

@@ -1,6 +1,7 @@
 #include "lichtveld/scene/scene.hpp"
 
 #include <algorithm>
+#include <iterator>
 
 namespace lichtveld::scene {
 
@@ -16,6 +17,14 @@ Sphere bounding_sphere(const Scene& scene, const Offsets& offsets) {
     high = glm::max(high, glm::dvec3(scene.bodies[i].box.max) + offset);
   }
   return {(low + high) / 2.0, static_cast<float>(glm::length(high - low) / 2)};
+}
+
+bool of_one_node(const Scene& scene, std::uint32_t a, std::uint32_t b) {
+  const auto node_of = [&](std::uint32_t triangle) -> const std::string& {
+    // Surfaces follow each other in Scene::indices.
+    return std::prev(std::ranges::upper_bound(scene.surfaces, 3 * triangle, {}, &Surface::first_index))->node;
+  };
+  return node_of(a) == node_of(b);
 }
 
 std::uint32_t find_body(const Scene& scene, const std::string& node) {

@@ -290,6 +290,31 @@ TEST_F(RaysMethod, DoubleSidedSheetsSendFromTheSideThatIsLit) {
 }
 
 // A wall whose panels have charts that hold no texel's centre.
+// Two faces that lie on each other and look away from each other are a sheet, and no body on a floor.
+TEST_F(RaysMethod, ASheetOfTwoFacesIsLitOnBoth) {
+  for (const bool movable : {false, true}) {
+    SceneBuilder builder;
+    const int grey = builder.material(glm::vec3(0.6f));
+    builder.box("room", {-2, 0, -2}, {2, 3, 2}, {0, 0, 1, 0.5f}, grey, true);
+    square(builder, "lamp", 2.9f, true, {0.9f, 0.9f, 1, 1}, builder.material(glm::vec3(0), glm::vec3(9)), 0.5f);
+    std::vector<glm::vec3> corners;
+    std::vector<glm::vec2> atlas;
+    for (const float u : {0.05f, 0.4f})  // of the upper face's chart, and of the lower one's
+      for (const glm::vec2 at : {glm::vec2(0, 0), glm::vec2(1, 0), glm::vec2(1, 1), glm::vec2(0, 1)}) {
+        corners.emplace_back(1.4f * at.x - 0.7f, 1.2f, 1.4f * at.y - 0.7f);
+        atlas.emplace_back(u + 0.25f * at.x, 0.6f + 0.25f * at.y);
+      }
+    const int sheet = builder.mesh("sheet", corners, atlas, {0, 2, 1, 0, 3, 2, 4, 5, 6, 4, 6, 7}, grey);
+    if (movable) builder.set_movable(sheet);
+    const auto scene = loaded(builder);
+    const auto traced = reference::trace(scene, {}, {.size = 64, .spp = 1024});
+    const auto lit = of(texels_of(scene, {.size = 64, .psf = 384}), "sheet"),
+               truth = of(texels(scene, 64, traced.texels, {}), "sheet");
+    EXPECT_NEAR(mean(lit) / mean(truth), 1, 0.02) << (movable ? "movable" : "standing");
+    for (const auto& texel : lit) ASSERT_GT(texel.irradiance.g, 0);
+  }
+}
+
 TEST_F(RaysMethod, ChartsWithoutATexelSendTheirLight) {
   const auto bright_mean = [&](bool small_charts) {
     SceneBuilder builder;

@@ -228,9 +228,10 @@ void LampLight::find_own(Lamp& lamp, std::uint32_t body, const Block& block) con
       for (const auto& patch : lamp.shape.patches)
         unshadowed += irradiance_of(patch, place, record.normal, record.face);
     }
-    if (unshadowed == glm::vec3(0) || contact(receiver, 0) || (body != 0 && contact(receiver, body))) continue;
+    const bool meets = body != 0 && index_.may_meet_own_body(record.triangle, record.face);
+    if (unshadowed == glm::vec3(0) || contact(receiver, 0) || (meets && contact(receiver, body))) continue;
     looked_at[i] = shining(lamp, receiver);
-    meets_body |= body != 0 && index_.may_meet_own_body(record.triangle, record.face);
+    meets_body |= meets;
   }
   BlockBits left = looked_at;
   for (const std::uint32_t other : {0u, body}) {

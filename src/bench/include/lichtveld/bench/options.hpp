@@ -35,7 +35,9 @@ struct Options {
   std::string reference_cache;             // default_reference_cache(), unless it is named
   std::uint32_t updates = 60;              // steps of the walks
   std::vector<std::uint32_t> update_psfs;  // those of the walks
-  bool scale = false;  // instead of all that: by triangles and cores, in rooms of its own
+  // Instead of all that, in rooms of its own: by triangles and cores, or by the lamp's size.
+  bool scale = false, lamps = false;
+  bool own_rooms() const { return scale || lamps; }
   SweepOptions sweep;
 };
 

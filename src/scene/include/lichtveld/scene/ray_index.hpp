@@ -62,12 +62,14 @@ class RayIndex {
   bool may_meet_own_body(std::uint32_t triangle, const glm::vec3& face) const;
 
   // Whether a surface of that body lies on the place and looks at it, so that nothing else can be seen from
-  // there. Place and face (unit) are of that triangle, which is not found itself.
+  // there, and is not the other side of the same sheet (of_one_node). Place and face (unit) are of that
+  // triangle, which is not found itself.
   bool contact(std::uint32_t body, const glm::vec3& offset, const glm::vec3& place, const glm::vec3& face,
                std::uint32_t triangle) const;
 
  private:
   struct Trees;
+  const Scene& scene_;
   std::unique_ptr<Trees> trees_;
   glm::vec3 centre_;
   float skin_;

@@ -88,6 +88,9 @@ Scene load(const std::filesystem::path& file);
 // shorter than Scene::bodies; what is absent has not moved).
 Sphere bounding_sphere(const Scene& scene, const Offsets& offsets = {});
 
+// Whether two triangles of Scene::indices are of surfaces whose node has the same name.
+bool of_one_node(const Scene& scene, std::uint32_t a, std::uint32_t b);
+
 // The index of the movable body whose node has that name. Throws SceneError that lists the movable nodes.
 std::uint32_t find_body(const Scene& scene, const std::string& node);
 
