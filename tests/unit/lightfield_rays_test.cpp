@@ -307,7 +307,7 @@ TEST_F(RaysMethod, ASheetOfTwoFacesIsLitOnBoth) {
     const int sheet = builder.mesh("sheet", corners, atlas, {0, 2, 1, 0, 3, 2, 4, 5, 6, 4, 6, 7}, grey);
     if (movable) builder.set_movable(sheet);
     const auto scene = loaded(builder);
-    const auto traced = reference::trace(scene, {}, {.size = 64, .spp = 1024});
+    const auto traced = reference::trace(scene, {}, {.size = 64, .spp = 256});
     const auto lit = of(texels_of(scene, {.size = 64, .psf = 384}), "sheet"),
                truth = of(texels(scene, 64, traced.texels, {}), "sheet");
     EXPECT_NEAR(mean(lit) / mean(truth), 1, 0.02) << (movable ? "movable" : "standing");

@@ -234,15 +234,15 @@ void LampLight::find_own(Lamp& lamp, std::uint32_t body, const Block& block) con
     meets_body |= meets;
   }
   BlockBits left = looked_at;
-  for (const std::uint32_t other : {0u, body}) {
-    if (other != 0 && !meets_body) continue;
-    const auto out_of_sight = hidden(lamp, other, block, left, left);
+  const auto leave_out_hidden = [&](std::uint32_t by) {
+    const auto out_of_sight = hidden(lamp, by, block, left, left);
     for (std::uint32_t i = 0; i < block.size(); ++i) left[i] &= ~out_of_sight[i];
-    if (body == 0) break;
-  }
+  };
+  leave_out_hidden(0);
+  if (meets_body) leave_out_hidden(body);
   for (std::uint32_t i = 0; i < block.size(); ++i) {
     const std::uint32_t receiver = order_[block.first + i];
-    // What brings no light is out of nobody's way.
+    // Whether a sample that brings no light is seen does not matter.
     lamp.own[receiver] = lamp.seen[receiver] = looked_at[i] == 0 ? 0 : left[i] | ~looked_at[i];
   }
 }
