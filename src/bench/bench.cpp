@@ -57,11 +57,6 @@ void warn_of_noise(const SweepResult& result) {
   }
 }
 
-void append(SweepResult& all, SweepResult&& more) {
-  std::move(more.rows.begin(), more.rows.end(), std::back_inserter(all.rows));
-  std::move(more.truths.begin(), more.truths.end(), std::back_inserter(all.truths));
-}
-
 void write_charts(const SweepResult& result, const fs::path& out) {
   const auto passes = rows_with_passes(result.rows);
   files::write_text(out / "chart.csv", chart_csv(result.rows));

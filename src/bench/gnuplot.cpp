@@ -10,33 +10,13 @@
 #include <stdexcept>
 
 #include "lichtveld/files/output.hpp"
+#include "scratch.hpp"
 
 namespace lichtveld::bench {
 
 namespace {
 
 namespace fs = std::filesystem;
-
-// A folder for script and data, gone with it. Files, not a pipe: writing to a gnuplot that is not there would
-// end us.
-class Scratch {
- public:
-  Scratch() {
-    std::string name = (fs::temp_directory_path() / "lichtveld-chart-XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder at " + name);
-    path_ = name;
-  }
-  Scratch(const Scratch&) = delete;
-  Scratch& operator=(const Scratch&) = delete;
-  ~Scratch() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
 
 // For a shell.
 std::string escaped(const std::string& text) {
@@ -77,6 +57,7 @@ void draw(const Chart& chart, const fs::path& folder) {
     return;
   }
   try {
+    // Files, not a pipe: writing to a gnuplot that is not there would end us.
     const Scratch scratch;
     for (const auto& [name, bytes] : chart.data) files::write_text(scratch.path() / name, bytes);
     for (const auto& format : chart.formats)

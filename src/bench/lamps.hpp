@@ -7,11 +7,9 @@
 
 namespace lichtveld::bench {
 
-// Rooms that one lamp of the same power lights, from the whole ceiling to a candle. Each row's scene is named
-// after its lamp's share of the ceiling: `lamp_share` tells it.
+// Rooms that one lamp of the same power lights, from the whole ceiling to a candle: each named after its lamp's
+// share of the ceiling.
 SweepResult compare_lamps(const gpu::Device& device, const SweepOptions& options, const ReferenceCache& cache);
-
-double lamp_share(const std::string& scene);
 
 // lamps.svg, .png: error against the lamp's share of the ceiling, a line a method.
 void plot_lamps(const SweepResult& result, const std::filesystem::path& folder);

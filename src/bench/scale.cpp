@@ -17,7 +17,7 @@
 #include "lichtveld/scene/motion.hpp"
 #include "row.hpp"
 #include "scale_room.hpp"
-#include "temporary_file.hpp"
+#include "scratch.hpp"
 
 namespace lichtveld::bench {
 
@@ -84,12 +84,13 @@ ScaleRow measure(const gpu::Device& device, const std::string& file, std::uint32
 
 std::vector<ScaleRow> time_scale(const gpu::Device& device, std::uint32_t size) {
   const std::set<std::uint32_t> cores = {1, std::max(std::thread::hardware_concurrency(), 1u)};
-  const TemporaryFile file("scale.glb");
+  const Scratch scratch;
+  const auto file = scratch.path() / "scale.glb";
   std::vector<ScaleRow> rows;
   for (const auto triangles : triangle_counts) {
-    files::write_text(file.path(), scale_room(triangles, 0.15f));
+    files::write_text(file, scale_room(triangles, 0.15f));
     for (const auto some : cores) {
-      rows.push_back(measure(device, file.path().string(), triangles, some, size));
+      rows.push_back(measure(device, file.string(), triangles, some, size));
       spdlog::info("{} triangles on {} cores: first map after {:.0f} ms", triangles, some,
                    rows.back().load_ms + rows.back().first_ms);
     }

@@ -174,6 +174,11 @@ Settings curve_settings(ABuffer abuffer, std::uint32_t size, std::uint32_t psf, 
   return settings;
 }
 
+void append(SweepResult& all, SweepResult&& more) {
+  std::move(more.rows.begin(), more.rows.end(), std::back_inserter(all.rows));
+  std::move(more.truths.begin(), more.truths.end(), std::back_inserter(all.truths));
+}
+
 bool is_dark(const scene::Scene& scene) {
   return scene::emitting_triangles(scene).empty();
 }

@@ -27,6 +27,8 @@ struct SweepResult {
   std::vector<Truth> truths;  // none of a scene that is dark
 };
 
+void append(SweepResult& all, SweepResult&& more);
+
 // The rows of a scene, not yet measured. Throws std::invalid_argument for settings out of their ranges.
 std::vector<Row> rows_of(const std::string& scene, const SweepOptions& options);
 

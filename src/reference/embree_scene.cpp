@@ -68,16 +68,7 @@ void fill(RTCGeometry target, RTCBufferType type, RTCFormat format, std::size_t 
 
 RTCRayHit traced(RTCScene scene, Query& query, const glm::vec3& direction) {
   const glm::vec3 start = query.from.position - query.behind * direction;
-  RTCRayHit ray{};
-  ray.ray.org_x = start.x;
-  ray.ray.org_y = start.y;
-  ray.ray.org_z = start.z;
-  ray.ray.dir_x = direction.x;
-  ray.ray.dir_y = direction.y;
-  ray.ray.dir_z = direction.z;
-  ray.ray.tfar = std::numeric_limits<float>::infinity();
-  ray.ray.mask = ~0u;
-  ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  auto ray = scene::ray_along(start, direction, std::numeric_limits<float>::infinity());
   scene::intersect(scene, query, ray);
   return ray;
 }

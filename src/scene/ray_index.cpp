@@ -237,18 +237,9 @@ bool RayIndex::contact(std::uint32_t body, const glm::vec3& offset, const glm::v
   const glm::vec3 surface = place - (centre_ + offset);
   Query context;
   const auto look = [&](const glm::vec3& start, float reach) {
-    RTCRayHit query{};
-    query.ray.org_x = start.x;
-    query.ray.org_y = start.y;
-    query.ray.org_z = start.z;
-    query.ray.dir_x = face.x;
-    query.ray.dir_y = face.y;
-    query.ray.dir_z = face.z;
-    query.ray.tfar = reach;
-    query.ray.mask = ~0u;
-    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    intersect(trees_->of_body(body), context, query);
-    return query.hit;
+    auto ray = ray_along(start, face, reach);
+    intersect(trees_->of_body(body), context, ray);
+    return ray.hit;
   };
   context.face = &face;
   context.triangle = triangle;

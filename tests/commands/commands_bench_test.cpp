@@ -208,6 +208,20 @@ TEST_F(Bench, ScaleTellsWhatTrianglesAndCoresCost) {
       EXPECT_GT(number(line, time), 0);
 }
 
+TEST_F(Bench, LampsOfAnySizeAreComparedByEveryMethod) {
+  const auto ran = bench("--lamps --size 32 --spp 64 --repeats 1");
+  ASSERT_EQ(ran.status, 0) << ran.output;
+  const auto lines = table(out() / "lamps.csv");
+  ASSERT_EQ(lines.size(), 7u * 3) << "rooms, each by thesis, links and rays";
+  EXPECT_EQ(lines.front().at("scene"), "lamp_100_percent");
+  EXPECT_EQ(lines.back().at("scene"), "lamp_0.01_percent");
+  for (const auto& line : lines)
+    if (line.at("method") != "thesis") {
+      EXPECT_LT(number(line, "rel_rmse"), 0.1) << line.at("scene");
+    }
+  EXPECT_THAT(bench("--lamps --scale").output, HasSubstr("--scale"));
+}
+
 TEST(BenchOddities, ADarkRoomWithoutBodiesAndWithoutGnuplotIsTimedAlone) {
   const TempFolder folder;
   SceneBuilder builder;

@@ -1,6 +1,7 @@
 // Embree 3 (Debian 12) or 4 (Ubuntu 24.04, Debian 13), which differ in how a query is made.
 #pragma once
 
+#include <glm/glm.hpp>
 #include <memory>
 
 #if __has_include(<embree4/rtcore.h>)
@@ -59,6 +60,21 @@ inline void occluded(RTCScene scene, QueryContext& context, const int* active, R
 #endif
 
 namespace lichtveld::scene {
+
+// A ray that has hit nothing yet and looks so many lengths of its direction far.
+inline RTCRayHit ray_along(const glm::vec3& from, const glm::vec3& direction, float reach) {
+  RTCRayHit ray{};
+  ray.ray.org_x = from.x;
+  ray.ray.org_y = from.y;
+  ray.ray.org_z = from.z;
+  ray.ray.dir_x = direction.x;
+  ray.ray.dir_y = direction.y;
+  ray.ray.dir_z = direction.z;
+  ray.ray.tfar = reach;
+  ray.ray.mask = ~0u;
+  ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  return ray;
+}
 
 struct ReleaseEmbree {
   void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
