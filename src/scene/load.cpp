@@ -2,11 +2,13 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
-#include <map>
+#include <limits>
+#include <numbers>
 
 #include "lichtveld/scene/lights.hpp"
 #include "model.hpp"
 #include "parts.hpp"
+#include "sky.hpp"
 
 namespace lichtveld::scene {
 namespace {
@@ -14,16 +16,28 @@ namespace {
 // 64 triangles a texel of a 256 x 256 atlas, and 1 GB at worst: more is a mistake.
 constexpr std::size_t max_triangles = std::size_t{1} << 22;
 
-std::vector<Body> find_bodies(const tinygltf::Model& model, const std::vector<PlacedNode>& nodes,
-                              std::map<int, std::uint32_t>& body_of) {
-  std::vector<Body> bodies{{"standing scene", {}, {}}};
+// Scene::bodies and lights.
+Owners find_owners(const tinygltf::Model& model, const std::vector<PlacedNode>& nodes, Scene& scene) {
+  Owners owners;
+  scene.bodies = {{"standing scene", {}, {}}};
+  scene.lights = {{.node = "what does not switch"}};
   for (const PlacedNode& placed : nodes) {
-    if (placed.movable != placed.node) continue;
-    body_of[placed.node] = static_cast<std::uint32_t>(bodies.size());
     const glm::vec3 place = placed.world[3];
-    bodies.push_back({node_name(model, placed.node), place, {place, place}});
+    if (placed.movable == placed.node) {
+      owners.body[placed.node] = static_cast<std::uint32_t>(scene.bodies.size());
+      scene.bodies.push_back({node_name(model, placed.node), place, {place, place}});
+    }
+    if (placed.light == placed.node) {
+      owners.light[placed.node] = static_cast<std::uint32_t>(scene.lights.size());
+      const std::string name = node_name(model, placed.node);
+      auto light =
+          light_of(model.nodes[static_cast<std::size_t>(placed.node)].extras, name, "node \"" + name + "\"");
+      light.place = place;
+      light.body = owners.body.at(placed.movable);
+      scene.lights.push_back(std::move(light));
+    }
   }
-  return bodies;
+  return owners;
 }
 
 void measure_bodies(Scene& scene) {
@@ -36,16 +50,39 @@ void measure_bodies(Scene& scene) {
   }
 }
 
+// Where lights are that surfaces or punctual lights make up. Those of nothing that shines are told.
+void measure_lights(Scene& scene) {
+  std::vector<glm::vec3> low(scene.lights.size(), glm::vec3(std::numeric_limits<float>::infinity())),
+      high(scene.lights.size(), -low.front());
+  const auto add = [&](std::uint32_t light, const glm::vec3& place) {
+    low[light] = glm::min(low[light], place);
+    high[light] = glm::max(high[light], place);
+  };
+  for (const auto& surface : scene.surfaces)
+    if (scene.materials[surface.material].emission != glm::vec3(0))
+      for (std::uint32_t i = 0; i < surface.index_count; ++i)
+        add(surface.light, scene.vertices[scene.indices[surface.first_index + i]].position);
+  for (const auto& light : scene.punctual)
+    if (light.node != sky_name) add(light.light, light.place);
+  for (std::size_t light = 1; light < scene.lights.size(); ++light) {
+    if (low[light].x <= high[light].x)
+      scene.lights[light].place = (low[light] + high[light]) / 2.0f;
+    else if (!scene.sky || scene.sky->light != light)
+      spdlog::warn("{}: node \"{}\" is to be a light, and nothing of it shines", scene.file,
+                   scene.lights[light].node);
+  }
+}
+
 struct Piece {
   Surface surface;
   std::vector<std::uint32_t> indices;
 };
 
-std::vector<Piece> read_pieces(const tinygltf::Model& model, const Materials& materials, Scene& scene,
-                               Oddities& oddities) {
-  const std::vector<PlacedNode> nodes = place_nodes(model);
-  std::map<int, std::uint32_t> body_of{{-1, 0}};
-  scene.bodies = find_bodies(model, nodes, body_of);
+std::vector<Piece> read_pieces(const tinygltf::Model& model, const LoadOptions& options,
+                               const Materials& materials, Scene& scene, Oddities& oddities) {
+  const std::vector<PlacedNode> nodes = place_nodes(model, options.lights);
+  const Owners owners = find_owners(model, nodes, scene);
+  scene.punctual = read_lights(model, nodes, owners, options.lumens_per_watt);
   std::vector<Piece> pieces;
   std::size_t triangles_left = max_triangles;
   for (const PlacedNode& placed : nodes) {
@@ -64,8 +101,12 @@ std::vector<Piece> read_pieces(const tinygltf::Model& model, const Materials& ma
                          std::to_string(material));
       }
       const std::size_t slot = material < 0 ? model.materials.size() : static_cast<std::size_t>(material);
-      const std::uint32_t body = body_of.at(placed.movable);
-      Piece piece{{name, 0, 0, static_cast<std::uint32_t>(slot), body}, {}};
+      const std::uint32_t body = owners.body.at(placed.movable);
+      Piece piece{{.node = name,
+                   .material = static_cast<std::uint32_t>(slot),
+                   .body = body,
+                   .light = owners.light.at(placed.light)},
+                  {}};
       piece.indices = add_primitive(model, primitives[i], {name, i, body, placed.world},
                                     materials.colour_set[slot], triangles_left, scene, oddities);
       triangles_left -= piece.indices.size() / 3;
@@ -90,17 +131,62 @@ void warn_of(const Scene& scene, const Oddities& oddities) {
     spdlog::warn("{}: {} primitives have unusable normals; their faces' own are used", scene.file,
                  oddities.bad_normals);
   }
-  if (emitting_triangles(scene).empty())
-    spdlog::warn("{}: nothing emits light; give a material an emissiveFactor", scene.file);
+  if (!has_light(scene))
+    spdlog::warn("{}: nothing emits light; give a material an emissiveFactor, add a light, or try --sky 1,1,1",
+                 scene.file);
 }
 
-Scene read_scene(const std::filesystem::path& file) {
+// The sky that is asked for, or else the file's, with its suns behind the other lights.
+void add_sky(const tinygltf::Model& model, const LoadOptions& options, const std::filesystem::path& folder,
+             Scene& scene) {
+  auto found = options.sky.empty() ? find_sky(model, scene_of(model), folder) : sky_of(options.sky);
+  if (!found) return;
+  const auto& extras = model.scenes[static_cast<std::size_t>(scene_of(model))].extras;
+  if (are_of_light(extras) || std::ranges::find(options.lights, sky_name) != options.lights.end()) {
+    found->sky.light = static_cast<std::uint32_t>(scene.lights.size());
+    scene.lights.push_back(light_of(extras, sky_name, "the scene"));
+  }
+  for (auto& sun : found->suns) {
+    sun.light = found->sky.light;
+    scene.punctual.push_back(std::move(sun));
+  }
+  scene.sky = std::move(found->sky);
+}
+
+// What each light is, in the file's numbers.
+void tell_of_lights(const Scene& scene) {
+  using Kind = PunctualLight::Kind;
+  constexpr std::size_t most_told = 16;
+  if (scene.sky) {
+    const glm::vec3 irradiance = irradiance_of(*scene.sky);
+    spdlog::info("{}: sky, {:.4g} {:.4g} {:.4g} W/m2 on open ground", scene.file, irradiance.r, irradiance.g,
+                 irradiance.b);
+  }
+  for (std::size_t i = 0; i < std::min(scene.punctual.size(), most_told); ++i) {
+    const auto& light = scene.punctual[i];
+    const float most = std::max({light.intensity.r, light.intensity.g, light.intensity.b});
+    if (light.kind == Kind::directional) {
+      spdlog::info("{}: directional light \"{}\", {:.4g} W/m2 on what faces it", scene.file, light.node, most);
+      continue;
+    }
+    const bool spot = light.kind == Kind::spot;
+    // Of a spot as much as of a cone between its two.
+    const float solid_angle =
+        2 * std::numbers::pi_v<float> * (spot ? 1 - (light.inner_cosine + light.outer_cosine) / 2 : 2.0f);
+    spdlog::info("{}: {} light \"{}\", {:.4g} W/sr, {:.4g} W", scene.file, spot ? "spot" : "point", light.node,
+                 most, most * solid_angle);
+  }
+  if (scene.punctual.size() > most_told)
+    spdlog::info("{}: and {} more lights", scene.file, scene.punctual.size() - most_told);
+}
+
+Scene read_scene(const std::filesystem::path& file, const LoadOptions& options) {
   const tinygltf::Model model = read_model(file);
   Scene scene;
   scene.file = file.string();
   Materials materials = read_materials(model);
   Oddities oddities;
-  std::vector<Piece> pieces = read_pieces(model, materials, scene, oddities);
+  std::vector<Piece> pieces = read_pieces(model, options, materials, scene, oddities);
   scene.materials = std::move(materials.materials);
   scene.textures = std::move(materials.textures);
   if (pieces.empty()) throw SceneError("has no triangles with an area: nothing to light");
@@ -118,7 +204,10 @@ Scene read_scene(const std::filesystem::path& file) {
   }
   if (double_sided == pieces.end()) scene.one_sided_indices = static_cast<std::uint32_t>(scene.indices.size());
   measure_bodies(scene);
+  add_sky(model, options, file.parent_path(), scene);
+  measure_lights(scene);
   warn_of(scene, oddities);
+  tell_of_lights(scene);
   return scene;
 }
 
@@ -132,9 +221,9 @@ std::string printable(std::string text) {
 
 }  // namespace
 
-Scene load(const std::filesystem::path& file) {
+Scene load(const std::filesystem::path& file, const LoadOptions& options) {
   try {
-    return read_scene(file);
+    return read_scene(file, options);
   } catch (const std::bad_alloc&) {
     throw SceneError(file.string() + ": not enough memory to read it");
   } catch (const std::exception& e) {  // our own errors, and what tinygltf lets escape from its parser

@@ -41,25 +41,50 @@ glm::dmat4 local_transform(const tinygltf::Node& node, const std::string& what) 
   return result;
 }
 
-bool is_movable(const tinygltf::Node& node) {
-  if (!node.extras.IsObject() || !node.extras.Has("movable")) return false;
-  const tinygltf::Value& movable = node.extras.Get("movable");
-  return movable.IsBool() && movable.Get<bool>();
-}
-
 }  // namespace
 
-std::vector<PlacedNode> place_nodes(const tinygltf::Model& model) {
+bool says(const tinygltf::Value& extras, const char* name) {
+  if (!extras.IsObject() || !extras.Has(name)) return false;
+  const tinygltf::Value& value = extras.Get(name);
+  return value.IsBool() && value.Get<bool>();
+}
+
+bool are_of_light(const tinygltf::Value& extras) {
+  return says(extras, "switchable") || (extras.IsObject() && (extras.Has("flicker") || extras.Has("schedule")));
+}
+
+Light light_of(const tinygltf::Value& extras, const std::string& node, const std::string& what) {
+  const auto number = [&](const char* name, double most) {
+    if (!extras.IsObject() || !extras.Has(name)) return 0.0f;
+    const auto& value = extras.Get(name);
+    const double found = value.IsNumber() ? value.GetNumberAsDouble() : -1;
+    if (!(found >= 0 && found <= most))
+      throw SceneError(what + ": extras." + name + " is no number of 0.." + std::to_string(std::lround(most)));
+    return static_cast<float>(found);
+  };
+  constexpr double longest_day = 24 * 60;
+  return {.node = node,
+          .switchable = says(extras, "switchable"),
+          .flicker = number("flicker", 1),
+          .day = number("schedule", longest_day)};
+}
+
+int scene_of(const tinygltf::Model& model) {
   const int chosen = model.defaultScene < 0 ? 0 : model.defaultScene;
   if (static_cast<std::size_t>(chosen) >= model.scenes.size()) {
     throw SceneError("there is no scene " + std::to_string(chosen) + ": export with a scene");
   }
+  return chosen;
+}
+
+std::vector<PlacedNode> place_nodes(const tinygltf::Model& model, std::span<const std::string> lights) {
+  const int chosen = scene_of(model);
   std::vector<PlacedNode> result;
   std::vector<bool> reached(model.nodes.size());
   // Visits a node under its parent. A node that is reached twice has two parents or is its own ancestor, and
   // walking on would take exponential time or never end.
   std::vector<PlacedNode> open;
-  const auto enter = [&](int node, const glm::dmat4& parent, int movable, const std::string& from) {
+  const auto enter = [&](int node, const PlacedNode& parent, const std::string& from) {
     if (node < 0 || static_cast<std::size_t>(node) >= model.nodes.size()) {
       throw SceneError(from + ": there is no node " + std::to_string(node));
     }
@@ -70,18 +95,22 @@ std::vector<PlacedNode> place_nodes(const tinygltf::Model& model) {
     }
     reached[static_cast<std::size_t>(node)] = true;
     const tinygltf::Node& in = model.nodes[static_cast<std::size_t>(node)];
-    const std::string what = "node \"" + node_name(model, node) + "\"";
-    open.push_back({node, parent * local_transform(in, what), movable < 0 && is_movable(in) ? node : movable});
+    const std::string name = node_name(model, node);
+    const bool is_light = are_of_light(in.extras) || std::ranges::find(lights, name) != lights.end();
+    open.push_back({.node = node,
+                    .world = parent.world * local_transform(in, "node \"" + name + "\""),
+                    .movable = parent.movable < 0 && says(in.extras, "movable") ? node : parent.movable,
+                    .light = parent.light < 0 && is_light ? node : parent.light});
   };
   for (int node : model.scenes[static_cast<std::size_t>(chosen)].nodes) {
-    enter(node, glm::dmat4(1), -1, "scene " + std::to_string(chosen));
+    enter(node, {}, "scene " + std::to_string(chosen));
   }
   while (!open.empty()) {
     const PlacedNode placed = open.back();
     open.pop_back();
     result.push_back(placed);
     for (int child : model.nodes[static_cast<std::size_t>(placed.node)].children) {
-      enter(child, placed.world, placed.movable, "node \"" + node_name(model, placed.node) + "\"");
+      enter(child, placed, "node \"" + node_name(model, placed.node) + "\"");
     }
   }
   std::ranges::sort(result, {}, &PlacedNode::node);

@@ -4,6 +4,9 @@
 #include <tiny_gltf.h>
 
 #include <glm/glm.hpp>
+#include <map>
+#include <span>
+#include <string>
 #include <vector>
 
 #include "lichtveld/scene/scene.hpp"
@@ -22,11 +25,31 @@ Materials read_materials(const tinygltf::Model& model);
 struct PlacedNode {
   int node = 0;
   glm::dmat4 world{1};
-  int movable = -1;  // the outermost node at or above this one with extras.movable, or -1
+  // The outermost node at or above this one with extras.movable, or -1, and the one that is a Light.
+  int movable = -1, light = -1;
 };
 
-// The nodes of the default scene (or else of scene 0), each reached exactly once.
-std::vector<PlacedNode> place_nodes(const tinygltf::Model& model);
+// Whether extras have this as true.
+bool says(const tinygltf::Value& extras, const char* name);
+
+// The default scene, or else scene 0.
+int scene_of(const tinygltf::Model& model);
+
+// Whether extras make a Light of what has them, and that light; `what` is its owner for messages.
+bool are_of_light(const tinygltf::Value& extras);
+Light light_of(const tinygltf::Value& extras, const std::string& node, const std::string& what);
+
+// The nodes of scene_of(), each reached exactly once. Those called as one of `lights` are Lights, too.
+std::vector<PlacedNode> place_nodes(const tinygltf::Model& model, std::span<const std::string> lights);
+
+// Indices into Scene::bodies and Scene::lights by a PlacedNode's, 0 for -1.
+struct Owners {
+  std::map<int, std::uint32_t> body = {{-1, 0}}, light = {{-1, 0}};
+};
+
+// The KHR_lights_punctual of these nodes, their numbers divided by `lumens_per_watt`.
+std::vector<PunctualLight> read_lights(const tinygltf::Model& model, const std::vector<PlacedNode>& nodes,
+                                       const Owners& owners, double lumens_per_watt);
 
 // What was odd but harmless, counted over all primitives.
 struct Oddities {

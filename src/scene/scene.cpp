@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <set>
 
 namespace lichtveld::scene {
 
@@ -40,6 +41,28 @@ std::uint32_t find_body(const Scene& scene, const std::string& node) {
   if (found) return found;
   throw SceneError(scene.file + ": no movable node \"" + node + "\"; " +
                    (names.empty() ? "none is movable (extras.movable)" : "movable are: " + names));
+}
+
+std::vector<std::uint32_t> find_lights(const Scene& scene, const std::string& node) {
+  std::vector<std::uint32_t> found;
+  for (std::uint32_t i = 1; i < scene.lights.size(); ++i)
+    if (scene.lights[i].node == node) found.push_back(i);
+  if (!found.empty()) return found;
+  std::set<std::string> names;
+  for (std::size_t i = 1; i < scene.lights.size(); ++i) names.insert(scene.lights[i].node);
+  for (const auto& surface : scene.surfaces)
+    if (surface.light == 0 && scene.materials[surface.material].emission != glm::vec3(0))
+      names.insert(surface.node);
+  for (const auto& light : scene.punctual)
+    if (light.light == 0) names.insert(light.node);
+  if (scene.sky) names.insert(sky_name);
+  std::string list;
+  for (const auto& name : names) {
+    list += (list.empty() ? "" : ", ") + name;
+    if (list.size() > 300) break;
+  }
+  throw SceneError(scene.file + ": nothing that shines is called \"" + node + "\"; " +
+                   (list.empty() ? "nothing does" : "there are: " + list));
 }
 
 }  // namespace lichtveld::scene

@@ -26,7 +26,24 @@ json nested(int depth) {
   return depth ? json::array({nested(depth - 1)}) : json::array();
 }
 
+// The floor's node gets a light.
+std::function<void(SceneBuilder&)> with_light(const json& light, const json& number = 0) {
+  return [=](SceneBuilder& builder) {
+    builder.gltf["extensions"]["KHR_lights_punctual"]["lights"] = {light};
+    builder.gltf["nodes"][0]["extensions"]["KHR_lights_punctual"]["light"] = number;
+  };
+}
+
 const std::vector<SpoiltCase> spoilt_cases = {
+    {"LightOutside", with_light({{"type", "point"}}, 1), "node \"floor\": light: there is no light 1"},
+    {"LightOfNoKind", with_light({{"type", "disco"}}), "no light of type \"disco\""},
+    {"LightNegative", with_light({{"type", "point"}, {"intensity", -1}}), "intensity is -1"},
+    {"LightColour", with_light({{"type", "point"}, {"color", {1, -2, 1}}}), "color is -2"},
+    {"LightRange", with_light({{"type", "point"}, {"range", -1}}), "range is -1"},
+    {"SpotInsideOut",
+     with_light({{"type", "spot"}, {"spot", {{"innerConeAngle", 0.5}, {"outerConeAngle", 0.4}}}}),
+     "innerConeAngle is 0.5"},
+    {"LightRadius", with_light({{"type", "point"}, {"extras", {{"radius", -1}}}}), "extras.radius is -1"},
     {"NoAtlas", [](auto& b) { attributes(b).erase("TEXCOORD_1"); },
      "node \"floor\", primitive 0 has no TEXCOORD_1: unwrap"},
     {"NoPosition", [](auto& b) { attributes(b).erase("POSITION"); }, "primitive 0 has no POSITION"},

@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <filesystem>
 #include <glm/glm.hpp>
+#include <limits>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -44,6 +46,7 @@ struct Surface {
   std::string node;  // the node's name, or "node 7"
   std::uint32_t first_index = 0, index_count = 0;
   std::uint32_t material = 0, body = 0;
+  std::uint32_t light = 0;  // index into Scene::lights; means something where the material emits
 };
 
 struct Box {
@@ -61,6 +64,52 @@ struct Body {
 // How far each body is from its place at rest [m], one entry a body; the first, which stands still, is 0.
 using Offsets = std::vector<glm::vec3>;
 
+// What is scaled as one. Light 0 is all that shines as it is; 1.. are the nodes with extras.switchable, flicker
+// or schedule, in the order of the file, each with everything below it, and the sky if its scene has one of
+// these.
+struct Light {
+  std::string node;
+  glm::vec3 place{0};  // the middle of what shines, bodies at rest [m]
+  std::uint32_t body = 0;
+  bool switchable = false;  // by players
+  float flicker = 0;        // extras.flicker: the share of its light that comes and goes, as a candle's, 0..1
+  float day = 0;            // extras.schedule: by the sun of a day that takes so long [minutes]; 0: by none
+};
+
+// What the sky is called among the lights.
+inline constexpr const char* sky_name = "sky";
+
+// Times what the file says each light gives, a colour each, one entry a light.
+using Scales = std::vector<glm::vec3>;
+
+constexpr double sun_angle = 0.53;  // as the sun is seen from the earth [degrees]
+
+// A light without a surface (KHR_lights_punctual). The file's numbers are taken as they are, as three.js reads
+// them, for watts.
+struct PunctualLight {
+  enum class Kind { directional, point, spot };
+  std::string node;
+  Kind kind = Kind::point;
+  // Point and spot: I [W sr^-1], E = I cos / d^2. Directional: E of what faces it [W m^-2].
+  glm::vec3 intensity{0};
+  glm::vec3 place{0};                                    // world space with every body at rest [m]
+  glm::vec3 direction{0, 0, -1};                         // unit: where it shines
+  float range = std::numeric_limits<float>::infinity();  // [m]
+  float inner_cosine = 1, outer_cosine = 0;              // of a spot's cones
+  float radius = 0;                                      // extras.radius of a point or spot [m]
+  float angle = 0;  // extras.angle of a directional light, across [degrees]
+  std::uint32_t body = 0, light = 0;
+};
+
+// Light from outside, from everywhere where a ray leaves the scene.
+struct Sky {
+  // L [W m^-2 sr^-1] in equirectangular pixels as three.js reads them: row 0 looks along +y, the columns from
+  // -x on round by -z, +x and +z.
+  std::uint32_t width = 1, height = 1;
+  std::vector<glm::vec3> radiance = {glm::vec3(0)};
+  std::uint32_t light = 0;
+};
+
 // The sphere that the light field scales to the unit sphere.
 struct Sphere {
   glm::vec3 centre{0};
@@ -77,12 +126,24 @@ struct Scene {
   std::vector<Material> materials;
   std::vector<Texture> textures;
   std::vector<Body> bodies;
+  std::vector<PunctualLight> punctual;
+  std::optional<Sky> sky;
+  std::vector<Light> lights;
+};
+
+struct LoadOptions {
+  // "R,G,B", the same radiance from everywhere, or the name of an equirectangular .hdr or .exr; empty: what the
+  // file says (extras.sky of the scene, EXT_lights_image_based).
+  std::string sky = {};
+  // Names of nodes that are lights of their own whatever their extras; sky_name is the sky.
+  std::vector<std::string> lights = {};
+  double lumens_per_watt = 1;  // that the file's punctual lights are divided by
 };
 
 // Reads a .glb or .gltf file. Throws SceneError for a file that is missing, damaged or hostile, or that lacks
-// what the light field needs (triangles, TEXCOORD_1). What is odd but harmless (zero-area triangles, no
-// emitter) is logged as a warning.
-Scene load(const std::filesystem::path& file);
+// what the light field needs (triangles, TEXCOORD_1), or for options that name nothing in it. What is odd but
+// harmless (zero-area triangles, no emitter) is logged as a warning.
+Scene load(const std::filesystem::path& file, const LoadOptions& options = {});
 
 // The smallest sphere around the scene's bounding box with body i shifted by offsets[i] [m] (offsets may be
 // shorter than Scene::bodies; what is absent has not moved).
@@ -93,5 +154,8 @@ bool of_one_node(const Scene& scene, std::uint32_t a, std::uint32_t b);
 
 // The index of the movable body whose node has that name. Throws SceneError that lists the movable nodes.
 std::uint32_t find_body(const Scene& scene, const std::string& node);
+
+// The indices of the lights whose node has that name. Throws SceneError that lists the lights.
+std::vector<std::uint32_t> find_lights(const Scene& scene, const std::string& node);
 
 }  // namespace lichtveld::scene
