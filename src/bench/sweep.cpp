@@ -180,7 +180,7 @@ void append(SweepResult& all, SweepResult&& more) {
 }
 
 bool is_dark(const scene::Scene& scene) {
-  return scene::emitting_triangles(scene).empty();
+  return !scene::has_light(scene);
 }
 
 SweepResult sweep(const gpu::Device& device, const scene::Scene& scene, const std::string& name,

@@ -15,7 +15,16 @@ template <typename Field>
 std::unique_ptr<LightField> make(const gpu::Device& device, const scene::Scene& scene,
                                  const Settings& settings) {
   check(settings);
-  return std::make_unique<Field>(device, scene, settings);
+  Settings own = settings;
+  if (!scene.punctual.empty() || scene.sky) {
+    if (settings.direct == Direct::psf)
+      throw std::invalid_argument(
+          "--direct psf: " +
+          (scene.sky ? "the sky" : "the light of node \"" + scene.punctual.front().node + "\"") +
+          " has no surface that directions could find; leave --direct out");
+    own.direct = Direct::exact;
+  }
+  return std::make_unique<Field>(device, scene, own);
 }
 
 constexpr std::array all = {

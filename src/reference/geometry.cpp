@@ -13,13 +13,13 @@ constexpr float lift = 1e-6f;
 
 }  // namespace
 
-Geometry::Geometry(const scene::Scene& scene, const std::vector<glm::vec3>& offsets) : scene_(scene) {
-  const scene::Sphere sphere = scene::bounding_sphere(scene, offsets);
+Geometry::Geometry(const scene::Scene& scene, const std::vector<glm::vec3>& offsets)
+    : scene_(scene), offsets_(offsets), sphere_(scene::bounding_sphere(scene, offsets)) {
   positions_.reserve(scene.vertices.size());
   for (const scene::Vertex& vertex : scene.vertices) {
-    const glm::dvec3 offset = vertex.body < offsets.size() ? offsets[vertex.body] : glm::vec3(0);
-    positions_.emplace_back((glm::dvec3(vertex.position) + offset - glm::dvec3(sphere.centre)) /
-                            double{sphere.radius});
+    const glm::dvec3 offset = this->offset(vertex.body);
+    positions_.emplace_back((glm::dvec3(vertex.position) + offset - glm::dvec3(sphere_.centre)) /
+                            double{sphere_.radius});
   }
   faces_.resize(scene.indices.size() / 3);
   materials_.resize(faces_.size());

@@ -30,6 +30,12 @@ class Geometry {
   const std::vector<std::uint32_t>& indices() const { return scene_.indices; }
 
   const scene::Scene& scene() const { return scene_; }
+  // Of its own coordinates, in which the scene fills the unit sphere: where that is in the scene's, and how
+  // long one is there [m].
+  glm::vec3 in_scene(const glm::vec3& place) const { return sphere_.centre + sphere_.radius * place; }
+  float metres() const { return sphere_.radius; }
+  // Of a body [m].
+  glm::vec3 offset(std::uint32_t body) const { return body < offsets_.size() ? offsets_[body] : glm::vec3(0); }
   const scene::Material& material(std::uint32_t triangle) const;
   // Unit; the front is where the corners are seen counter-clockwise.
   const glm::vec3& face(std::uint32_t triangle) const { return faces_[triangle]; }
@@ -61,6 +67,8 @@ class Geometry {
   }
 
   const scene::Scene& scene_;
+  const scene::Offsets offsets_;
+  const scene::Sphere sphere_;
   std::vector<glm::vec3> positions_;
   std::vector<glm::vec3> faces_;
   std::vector<std::uint32_t> materials_;  // of each triangle

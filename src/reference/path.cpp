@@ -9,6 +9,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "lichtveld/scene/lights.hpp"
+
 namespace lichtveld::reference {
 namespace {
 
@@ -47,6 +49,7 @@ glm::vec3 PathTracer::irradiance(Receiver at, Sampler& sampler, RayCount& count)
   glm::vec3 sum(0), share(1);  // share: how much of the E at the vertex arrives at the texel
   for (std::uint32_t segment = 1;; ++segment) {
     sum += share * from_a_lamp(at, sampler.pair());
+    if (!geometry_.scene().punctual.empty()) sum += share * from_lights(at, sampler.pair());
 
     const glm::vec3 direction = cosine_distributed(at.normal, sampler.pair());
     const float cosine = glm::dot(direction, at.normal);
@@ -56,7 +59,10 @@ glm::vec3 PathTracer::irradiance(Receiver at, Sampler& sampler, RayCount& count)
       ++count.rays;
       count.misses += !hit;
     }
-    if (!hit) return sum;
+    if (!hit) {
+      const auto& sky = geometry_.scene().sky;
+      return sky ? sum + share * pi * scene::radiance_of(*sky, direction) : sum;
+    }
     const glm::vec3& emission = geometry_.material(hit->triangle).emission;
     if (emission != glm::vec3(0))
       sum += share * pi * emission * weight_of(cosine / pi, lamp_density(at, *hit, direction));
@@ -94,6 +100,32 @@ glm::vec3 PathTracer::from_a_lamp(const Receiver& at, glm::dvec2 random) const {
   if (!seen || seen->triangle != lamp.triangle) return glm::vec3(0);
   return geometry_.material(lamp.triangle).emission *
          static_cast<float>(cosine / density * weight_of(density, cosine / pi));
+}
+
+// E straight from punctual lights: of each all of it or nothing, by a point on the disc that it shows.
+glm::vec3 PathTracer::from_lights(const Receiver& at, glm::dvec2 random) const {
+  constexpr float short_of_light = 1 - 1e-4f;
+  const auto radius = static_cast<float>(std::sqrt(random.x)), turn = static_cast<float>(2 * pi * random.y);
+  const glm::vec3 place = geometry_.in_scene(at.position);
+  glm::vec3 sum(0);
+  for (const auto& light : geometry_.scene().punctual) {
+    const glm::vec3 offset = geometry_.offset(light.body);
+    const glm::vec3 irradiance = scene::irradiance_of(light, offset, place, at.normal, at.face);
+    if (irradiance == glm::vec3(0)) continue;
+    const bool sun = light.kind == scene::PunctualLight::Kind::directional;
+    const glm::vec3 along = scene::towards(light, offset, place);
+    const glm::vec3 right =
+        glm::normalize(glm::cross(along, std::abs(along.x) < 0.5f ? glm::vec3(1, 0, 0) : glm::vec3(0, 1, 0)));
+    const glm::vec3 beside = radius * (std::cos(turn) * right + std::sin(turn) * glm::cross(along, right));
+    const glm::vec3 way = sun ? along + std::tan(glm::radians(light.angle) / 2) * beside
+                              : light.place + offset - place + light.radius * beside;
+    const auto hit = embree_.nearest(at, glm::normalize(way));
+    if (hit && (sun || geometry_.metres() * glm::distance(geometry_.position(*hit), at.position) <
+                           short_of_light * glm::length(way)))
+      continue;
+    sum += irradiance;
+  }
+  return sum;
 }
 
 // The density with which lamps_ would have chosen that direction [1/sr]: area seen under distance^2 / cosine

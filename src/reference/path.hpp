@@ -26,6 +26,7 @@ class PathTracer {
 
  private:
   glm::vec3 from_a_lamp(const Receiver& at, glm::dvec2 random) const;
+  glm::vec3 from_lights(const Receiver& at, glm::dvec2 random) const;
   double lamp_density(const Receiver& at, const Hit& hit, const glm::vec3& direction) const;
 
   const Geometry& geometry_;

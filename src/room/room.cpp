@@ -6,8 +6,10 @@
 #include <thread>
 #include <utility>
 
+#include "inbox.hpp"
+#include "lichtveld/scene/lights.hpp"
+#include "lighting.hpp"
 #include "map_sender.hpp"
-#include "place_inbox.hpp"
 #include "work_log.hpp"
 
 namespace lichtveld::room {
@@ -40,6 +42,7 @@ class Room::Pipeline {
         options_(checked(std::move(options))),
         light_(std::move(light)),
         places_(places_at_rest(scene, options_.bodies)),
+        lighting_(scene, options_.scales.empty() ? scene::full(scene) : options_.scales),
         sender_(options_.publish, log_) {}
 
   void begin() {
@@ -53,17 +56,19 @@ class Room::Pipeline {
     while (!inbox_.stopped() && !(options_.ended && options_.ended())) {
       const auto start = Clock::now();
       sender_.wait();
-      const auto news = inbox_.take(settled() ? 1s : 0s);
+      const bool resting = settled() && !lighting_.changes();
+      const auto news = inbox_.take(resting ? 1s : 0s);
       if (news) {
         log_.add("input", Clock::now() - news->came);
-        places_ = news->places;
-      } else if (settled()) {
+        if (news->places) places_ = *news->places;
+        if (news->scales) lighting_.set(*news->scales);
+      } else if (resting) {
         check();
         continue;
       }
       // After a step as little as the engine's settings say, so that the next step is shown soon; while nothing
       // moves what is left, but no longer than until somebody moves again.
-      waited = news ? 0 : waited + 1;
+      waited = news || lighting_.changes() ? 0 : waited + 1;
       update([&](std::uint32_t bounces) {
         if (waited == 0 || inbox_.has_news()) return true;
         return waited < maps_to_settle && bounces >= bounces_to_settle;
@@ -74,7 +79,7 @@ class Room::Pipeline {
 
   void close() { sender_.close(); }
 
-  PlaceInbox& inbox() { return inbox_; }
+  Inbox& inbox() { return inbox_; }
   WorkLog& log() { return log_; }
   const scene::Scene& scene() const { return scene_; }
 
@@ -85,6 +90,7 @@ class Room::Pipeline {
   // so.
   void update(const lightfield::LightField::Enough& enough) {
     light_->place(offsets_of(scene_, places_));
+    light_->dim(lighting_.scales());
     if (settled()) return;
     lightfield::Shown shown;
     options_.around_update([&] {
@@ -112,9 +118,10 @@ class Room::Pipeline {
   const scene::Scene& scene_;
   const Options options_;
   WorkLog log_;
-  PlaceInbox inbox_;
+  Inbox inbox_;
   std::unique_ptr<lightfield::LightField> light_;
   Places places_;
+  Lighting lighting_;
   bool warned_ = false;
   MapSender sender_;  // last: it uses the rest
 };
@@ -133,7 +140,11 @@ void Room::run() {
 }
 
 void Room::place(Places places) {
-  pipeline_->inbox().put(std::move(places));
+  pipeline_->inbox().place(std::move(places));
+}
+
+void Room::dim(scene::Scales scales) {
+  pipeline_->inbox().dim(std::move(scales));
 }
 
 void Room::stop() {

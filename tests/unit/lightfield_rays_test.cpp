@@ -5,6 +5,7 @@
 #include <random>
 
 #include "core/area_lamps.hpp"
+#include "core/frame.hpp"
 #include "device_for_tests.hpp"
 #include "form_factors.hpp"
 #include "known_scenes.hpp"

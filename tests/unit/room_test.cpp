@@ -5,11 +5,14 @@
 #include <condition_variable>
 #include <mutex>
 #include <thread>
+#include <utility>
 
 #include "device_for_tests.hpp"
 #include "lichtveld/room/room.hpp"
+#include "lichtveld/scene/lights.hpp"
 #include "lichtveld/scene/motion.hpp"
 #include "light_fields.hpp"
+#include "lighting.hpp"
 
 namespace lichtveld::room {
 namespace {
@@ -108,6 +111,70 @@ TEST_F(LiveRoom, ShowsTheRoomAtRestAndThenFollowsItsBodies) {
   EXPECT_EQ(last.places, places);
   EXPECT_LT(difference(last.shown.bytes, shown_at(places)), 0.05) << "of 255: it has all the light";
   EXPECT_GT(difference(first.shown.bytes, last.shown.bytes), 0.2) << "the moves must matter";
+}
+
+// The lamp is switched off and on again; what is shown is what a fresh start with such a lamp shows.
+TEST_F(LiveRoom, FollowsItsLights) {
+  auto scene = scene_;
+  scene.lights.push_back({.node = "lamp", .switchable = true});
+  for (auto& surface : scene.surfaces) surface.light = 1;
+  const auto fresh = [&](const scene::Scales& scales) {
+    const auto dim = scene::dimmed(scene, scales);
+    const auto light = lightfield::make_light_field("rays", device(), dim, settings_);
+    settled(*light, at_rest(scene_));
+    return light->shown().bytes;
+  };
+  const scene::Scales blue = {glm::vec3(1), {0.1f, 0.2f, 0.9f}}, full = {glm::vec3(1), glm::vec3(1)};
+  const auto of_blue = fresh(blue), of_full = fresh(full);
+  ASSERT_GT(difference(of_blue, of_full), 5);
+  Audience audience;
+  Room room(scene, lightfield::make_light_field("rays", device(), scene, settings_),
+            {.rate = 1000, .scales = blue, .publish = [&](Map map) { audience.take(std::move(map)); }});
+  room.begin();
+  EXPECT_EQ(audience.wait_for(1).shown.bytes, of_blue);
+  {
+    const Running running(room);
+    room.dim(full);
+    audience.wait_for(2);
+    auto count = audience.count() - 1;
+    while (std::exchange(count, audience.count()) != audience.count()) std::this_thread::sleep_for(300ms);
+  }
+  EXPECT_LT(difference(audience.newest().shown.bytes, of_full), 0.05);
+}
+
+TEST_F(LiveRoom, ACandleNeverRests) {
+  auto scene = scene_;
+  scene.lights.push_back({.node = "lamp", .flicker = 0.5f});
+  for (auto& surface : scene.surfaces) surface.light = 1;
+  Audience audience;
+  Room room(scene, lightfield::make_light_field("rays", device(), scene, settings_),
+            {.rate = 1000, .publish = [&](Map map) { audience.take(std::move(map)); }});
+  room.begin();
+  const Running running(room);
+  audience.wait_for(10);
+}
+
+TEST(Lighting, ACandleComesAndGoesWithinItsShare) {
+  float least = 1, most = 0;
+  for (double t = 0; t < 100; t += 0.01) {
+    const float now = flicker(0.4f, t);
+    ASSERT_GE(now, 0.6f - 1e-5f);
+    ASSERT_LE(now, 1 + 1e-5f);
+    ASSERT_LT(std::abs(flicker(0.4f, t + 0.001) - now), 0.02f) << "without a step";
+    least = std::min(least, now), most = std::max(most, now);
+  }
+  EXPECT_LT(least, 0.66f);
+  EXPECT_GT(most, 0.94f);
+}
+
+TEST(Lighting, ADayHasItsNoonAndItsNight) {
+  EXPECT_NEAR(daylight(12).g, 1, 1e-6);
+  EXPECT_EQ(daylight(0), glm::vec3(0));
+  EXPECT_EQ(daylight(23), glm::vec3(0));
+  const auto evening = daylight(17.5);
+  EXPECT_GT(evening.r, evening.g);
+  EXPECT_GT(evening.g, evening.b);
+  EXPECT_GT(evening.b, 0);
 }
 
 TEST_F(LiveRoom, EachUpdateIsHandedToWhatIsAroundIt) {
@@ -213,7 +280,7 @@ TEST(RoomOptions, ThatMakeNoSenseAreRefused) {
 // turns out to have more layers than fit.
 class Failing : public lightfield::LightField {
  public:
-  Failing(std::size_t bodies, int& good) : LightField(bodies), good_(good) {}
+  Failing(const scene::Scene& scene, int& good) : LightField(scene, lightfield::Direct::exact), good_(good) {}
   std::vector<lightfield::Light> before;
 
   lightfield::TexelView irradiance_view() const override { return {std::span<const glm::vec4>(), 0}; }
@@ -237,7 +304,7 @@ class Failing : public lightfield::LightField {
 TEST_F(LiveRoom, ADeviceOutOfMemoryEndsItWithItsWords) {
   int good = 1;
   Audience audience;
-  Room room(scene_, std::make_unique<Failing>(scene_.bodies.size(), good),
+  Room room(scene_, std::make_unique<Failing>(scene_, good),
             {.publish = [&](Map map) { audience.take(std::move(map)); }});
   room.begin();
   audience.wait_for(1);
@@ -256,7 +323,7 @@ TEST_F(LiveRoom, ADeviceOutOfMemoryEndsItWithItsWords) {
 // What failed half-way is not gone on with: the next light starts afresh.
 TEST_F(LiveRoom, AfterAFailureAllIsComputedAfresh) {
   int good = 1;
-  Failing light(scene_.bodies.size(), good);
+  Failing light(scene_, good);
   auto offsets = at_rest(scene_);
   settled(light, offsets);
   offsets[1].x = 1;

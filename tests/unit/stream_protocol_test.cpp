@@ -69,5 +69,42 @@ TEST(Protocol, MovesAreExactWords) {
     EXPECT_EQ(parse_move(text), std::nullopt) << text;
 }
 
+TEST(Protocol, LightsAreOneJsonText) {
+  EXPECT_EQ(format_lights({}), R"({"lights":[]})");
+  EXPECT_EQ(format_lights({{"lamp", {1, 0.5f, 0}}, {"a\"b", {2, 2, 2}}}),
+            R"({"lights":[{"name":"lamp","scale":[1.0,0.5,0.0]},{"name":"a\"b","scale":[2.0,2.0,2.0]}]})");
+  EXPECT_LT(format_lights({{std::string(100'000, 'x'), {1, 1, 1}}}).size(), 200u);
+  EXPECT_NO_THROW(format_lights({{"\xff\xfe", {1, 1, 1}}}));
+  EXPECT_THROW(format_lights({{"lamp", {-1, 0, 0}}}), std::invalid_argument);
+  EXPECT_THROW(format_lights({{"lamp", {std::nanf(""), 0, 0}}}), std::invalid_argument);
+}
+
+TEST(Protocol, ADimmingIsALightAndOneOrThreeScales) {
+  EXPECT_EQ(parse_dimming("light 1 0.5"), (Dimming{0, {0.5f, 0.5f, 0.5f}}));
+  EXPECT_EQ(parse_dimming("light 12 0 1 16"), (Dimming{11, {0, 1, 16}}));
+  EXPECT_TRUE(asks_for_lights("lights"));
+  for (const auto* text : {"",
+                           "light",
+                           "light ",
+                           "light 1",
+                           "light 0 1",
+                           "light -1 1",
+                           "light 1 -1",
+                           "light 1 17",
+                           "light 1 nan",
+                           "light 1 inf",
+                           "light 1 1e0",
+                           "light 1 1 1",
+                           "light 1 1 1 1 1",
+                           "light 1  1",
+                           "light 1 1 ",
+                           "light 1,1",
+                           "light 99999999999999999999 1",
+                           "lights",
+                           "Light 1 1",
+                           "light 1 0x1"})
+    EXPECT_EQ(parse_dimming(text), std::nullopt) << text;
+}
+
 }  // namespace
 }  // namespace lichtveld::stream

@@ -1,4 +1,5 @@
 // Joining, maps, roles and moves over real connections.
+#include "lichtveld/stream/protocol.hpp"
 #include "stream_room.hpp"
 
 namespace lichtveld::stream::test {
@@ -57,6 +58,61 @@ TEST_F(RoomTest, WorkIsReportedWhenThereIsMoreOfIt) {
   EXPECT_EQ(work.at("counts").at(0), (nlohmann::json{{"name", "links"}, {"value", 7}}));
   EXPECT_EQ(work.at("counts").at(1), (nlohmann::json{{"name", "maps_sent"}, {"value", 1}}));
   EXPECT_EQ(work.at("passes"), (nlohmann::json{{{"name", "gather"}, {"runs", 4}, {"seconds", 0.25}}}));
+}
+
+TEST_F(RoomTest, LightsAreThePlayersAndTheNewestIsToldToWhoAsks) {
+  auto with_lights = options();
+  with_lights.lights = {{"lamp", {1, 1, 1}}, {"candle", {0, 0, 0}}};
+  std::vector<Light> heard;
+  with_lights.lights_changed = [&](const std::vector<Light>& lights) {
+    const std::lock_guard lock(mutex);
+    heard = lights;
+  };
+  server = std::make_unique<Server>(std::move(with_lights));
+  wait_connected();
+  Client player(*relay);
+  ASSERT_TRUE(player.wait_cube(1));
+  Client other(*relay);
+  ASSERT_TRUE(other.wait_cube(2));
+  Client watcher(*relay), quiet(*relay);
+  ASSERT_TRUE(watcher.wait_cube(0));
+  ASSERT_TRUE(quiet.wait_cube(0));
+  const auto told = [](const std::string& text) {
+    return [=](const auto& s) { return std::ranges::find(s.texts, text) != s.texts.end(); };
+  };
+  const std::string before = format_lights({{"lamp", {1, 1, 1}}, {"candle", {0, 0, 0}}}),
+                    after = format_lights({{"lamp", {1, 1, 1}}, {"candle", {0.5f, 0.25f, 0}}});
+  for (auto* client : {&player, &watcher}) {
+    client->channel().send(std::string("lights"));
+    ASSERT_TRUE(client->wait(told(before)));
+  }
+  player.channel().send(std::string("light 2 0.5 0.25 0"));
+  ASSERT_TRUE(player.wait(told(after)));
+  ASSERT_TRUE(watcher.wait(told(after)));
+  {
+    const std::lock_guard lock(mutex);
+    EXPECT_EQ(heard.at(1).scale, (LightScale{0.5f, 0.25f, 0}));
+  }
+  watcher.channel().send(std::string("light 1 0"));
+  ASSERT_TRUE(refused_at_least(1)) << "who watches switches nothing";
+  player.channel().send(std::string("light 3 1"));
+  ASSERT_TRUE(refused_at_least(2)) << "there is no third";
+  EXPECT_EQ(server->statistics().dimmings, 1u);
+  EXPECT_FALSE(told(before)(quiet.state())) << "who has not asked is told nothing";
+  EXPECT_FALSE(told(after)(quiet.state()));
+}
+
+TEST_F(RoomTest, AFloodOfDimmingsIsCutDown) {
+  auto with_lights = options();
+  with_lights.lights = {{"lamp", {1, 1, 1}}};
+  server = std::make_unique<Server>(std::move(with_lights));
+  wait_connected();
+  Client player(*relay);
+  ASSERT_TRUE(player.wait_cube(1));
+  for (int i = 0; i < 60; ++i) player.channel().send("light 1 " + std::to_string(i % 2));
+  ASSERT_TRUE(refused_at_least(10));
+  EXPECT_LT(server->statistics().dimmings, 50u);
+  EXPECT_EQ(server->statistics().peers, 1u) << "too much of it is no attack";
 }
 
 TEST_F(RoomTest, PlacesComeWithoutMapsAtLeastOnceASecond) {

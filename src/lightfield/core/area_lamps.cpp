@@ -10,6 +10,8 @@
 #include <tuple>
 #include <utility>
 
+#include "core/frame.hpp"
+#include "core/sky_lamps.hpp"
 #include "core/texel_records.hpp"
 #include "lichtveld/scene/lights.hpp"
 
@@ -106,20 +108,22 @@ std::array<float, 9> turned_to_least(const std::array<glm::vec3, 3>& corners) {
   return least;
 }
 
-// What hangs together: triangles that share a corner, of one body.
-std::vector<std::uint32_t> components(const scene::Scene& scene, const std::vector<std::uint32_t>& triangles) {
+// What hangs together: triangles that share a corner, of one body and light.
+std::vector<std::uint32_t> components(const scene::Scene& scene, const std::vector<std::uint32_t>& triangles,
+                                      const std::vector<std::uint32_t>& surfaces) {
   std::vector<std::uint32_t> parent(triangles.size());
   std::iota(parent.begin(), parent.end(), 0u);
   const auto root = [&](std::uint32_t i) {
     while (parent[i] != i) i = parent[i] = parent[parent[i]];
     return i;
   };
-  std::map<std::tuple<float, float, float, std::uint32_t>, std::uint32_t> first_at;
+  std::map<std::tuple<float, float, float, std::uint32_t, std::uint32_t>, std::uint32_t> first_at;
   for (std::uint32_t i = 0; i < triangles.size(); ++i)
     for (std::size_t k = 0; k < 3; ++k) {
       const auto& vertex = scene.vertices[scene.indices[std::size_t{3} * triangles[i] + k]];
       const auto& p = vertex.position;
-      const auto [place, is_new] = first_at.try_emplace({p.x, p.y, p.z, vertex.body}, i);
+      const auto [place, is_new] =
+          first_at.try_emplace({p.x, p.y, p.z, vertex.body, scene.surfaces[surfaces[triangles[i]]].light}, i);
       if (!is_new) parent[std::max(root(i), root(place->second))] = std::min(root(i), root(place->second));
     }
   std::vector<std::uint32_t> found;
@@ -149,15 +153,38 @@ void group(std::vector<AreaLamp> lamps, std::size_t groups, std::vector<AreaLamp
 }
 
 std::vector<AreaLamp> grouped(const std::vector<AreaLamp>& lamps, std::size_t most) {
-  std::map<std::uint32_t, std::vector<AreaLamp>> of_body;
-  for (const auto& lamp : lamps) of_body[lamp.body].push_back(lamp);
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<AreaLamp>> together;
+  for (const auto& lamp : lamps) together[{lamp.body, lamp.light}].push_back(lamp);
   std::vector<AreaLamp> found;
-  for (const auto& [body, some] : of_body)
+  for (const auto& [owners, some] : together)
     group(some, std::max<std::size_t>(some.size() * most / lamps.size(), 1), found);
   return found;
 }
 
-void place_samples(AreaLamp& lamp) {
+// Evenly over the disc that a sun far away is, or over a sphere (Vogel 1979): the golden angle from one to the
+// next.
+void place_samples(AreaLamp& lamp, const scene::Sphere& around) {
+  const auto& light = *lamp.punctual;
+  const bool sun = light.kind == scene::PunctualLight::Kind::directional;
+  const glm::vec3 middle = sun ? around.centre - far_away * around.radius * light.direction : light.place;
+  const float radius = sun ? far_away * around.radius * std::tan(glm::radians(light.angle) / 2) : light.radius;
+  const glm::mat3 frame = frame_about(sun ? -light.direction : glm::vec3(0, 1, 0));
+  lamp.box = {middle - radius, middle + radius};
+  LampSamples& samples = lamp.samples.emplace_back();
+  for (std::uint32_t i = 0; i < samples_of_lamp; ++i) {
+    const float at = (static_cast<float>(i) + 0.5f) / static_cast<float>(samples_of_lamp),
+                turn = static_cast<float>(i) * 2.39996323f, height = sun ? 0 : 1 - 2 * at,
+                away = sun ? std::sqrt(at) : std::sqrt(1 - height * height);
+    const glm::vec3 place =
+        middle + radius * (frame * glm::vec3(away * std::cos(turn), away * std::sin(turn), height));
+    samples.x[i] = place.x, samples.y[i] = place.y, samples.z[i] = place.z;
+    samples.intensity[i] = light.intensity / static_cast<float>(samples_of_lamp);
+  }
+}
+
+}  // namespace
+
+void place_samples(AreaLamp& lamp, const glm::vec2& shift) {
   lamp.box = {glm::vec3(std::numeric_limits<float>::infinity()),
               glm::vec3(-std::numeric_limits<float>::infinity())};
   std::vector<float> up_to;
@@ -170,16 +197,16 @@ void place_samples(AreaLamp& lamp) {
       lamp.box.max = glm::max(lamp.box.max, corner);
     }
   }
-  auto& samples = lamp.samples;
+  auto& samples = lamp.samples.emplace_back();
   for (std::uint32_t i = 0; i < samples_of_lamp; ++i) {
     // A lattice by the golden ratio: evenly spread, and its rows are in line with no edge.
     constexpr float golden = 0.61803398875f;
-    const float along = (static_cast<float>(i) + 0.5f) / static_cast<float>(samples_of_lamp) * power;
+    const float along = (static_cast<float>(i) + 0.5f + shift.x) / static_cast<float>(samples_of_lamp) * power;
     const auto number = static_cast<std::size_t>(
         std::min(std::ranges::lower_bound(up_to, along) - up_to.begin(), std::ssize(up_to) - 1));
     const auto& patch = lamp.patches[number];
     const float before = number > 0 ? up_to[number - 1] : 0;
-    const float other = (static_cast<float>(i) + 0.5f) * golden;
+    const float other = (static_cast<float>(i) + 0.5f) * golden + shift.y;
     const glm::vec3 place =
         place_on(patch, {(along - before) / (up_to[number] - before), other - std::floor(other)});
     const glm::vec3 normal = glm::normalize(normal_of(patch));
@@ -189,8 +216,6 @@ void place_samples(AreaLamp& lamp) {
     samples.intensity[i] = patch.emission / mean(patch.emission) * power / static_cast<float>(samples_of_lamp);
   }
 }
-
-}  // namespace
 
 glm::vec3 irradiance_of(const LampPatch& patch, const glm::vec3& place, const glm::vec3& normal,
                         const glm::vec3& face) {
@@ -211,11 +236,11 @@ glm::vec3 irradiance_of(const LampPatch& patch, const glm::vec3& place, const gl
   return patch.emission * std::max(sum, 0.0f);
 }
 
-std::vector<AreaLamp> find_area_lamps(const scene::Scene& scene, std::size_t most) {
+std::vector<AreaLamp> find_area_lamps(const scene::Scene& scene, std::size_t most, std::uint32_t sets) {
   std::vector<AreaLamp> lamps;
   const auto triangles = scene::emitting_triangles(scene);
   const auto surfaces = surface_of_triangles(scene);
-  const auto component = components(scene, triangles);
+  const auto component = components(scene, triangles, surfaces);
   std::map<std::uint32_t, std::uint32_t> lamp_of;
   std::set<std::array<float, 9>> known;  // a triangle that is written twice shines once
   for (std::uint32_t i = 0; i < triangles.size(); ++i) {
@@ -236,6 +261,7 @@ std::vector<AreaLamp> find_area_lamps(const scene::Scene& scene, std::size_t mos
     if (is_new) {
       lamps.emplace_back();
       lamps.back().body = surface.body;
+      lamps.back().light = surface.light;
     }
     auto& patches = lamps[place->second].patches;
     if (!patches.empty() && patches.back().triangle)
@@ -247,6 +273,17 @@ std::vector<AreaLamp> find_area_lamps(const scene::Scene& scene, std::size_t mos
   }
   if (lamps.size() > most) lamps = grouped(lamps, most);
   for (auto& lamp : lamps) place_samples(lamp);
+  const auto sphere = scene::bounding_sphere(scene);
+  for (const auto& light : scene.punctual) {
+    if (light.intensity == glm::vec3(0)) continue;
+    auto& lamp = lamps.emplace_back();
+    lamp.body = light.body;
+    lamp.light = light.light;
+    lamp.punctual = light;
+    place_samples(lamp, sphere);
+  }
+  if (scene.sky)
+    for (auto& lamp : sky_lamps(*scene.sky, sphere, sets)) lamps.push_back(std::move(lamp));
   return lamps;
 }
 

@@ -1,9 +1,11 @@
-// What of a scene shines: lamps, each a few polygons, with points on them for shadows.
+// What of a scene shines: lamps, each a few polygons, a punctual light or a part of the sky, with points on
+// them for shadows.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <optional>
 #include <vector>
 
 #include "lichtveld/scene/scene.hpp"
@@ -32,14 +34,29 @@ struct LampSamples {
 };
 
 struct AreaLamp {
-  std::uint32_t body = 0;
+  std::uint32_t body = 0, light = 0;  // of Scene::bodies and lights
   std::vector<LampPatch> patches = {};
-  scene::Box box = {};  // of the patches [m]
-  LampSamples samples = {};
+  // Instead of patches. One that is a point has one sample that matters, the first.
+  std::optional<scene::PunctualLight> punctual = {};
+  // The patch sends as much as each of its samples does where that is, instead of one radiance everywhere.
+  bool coloured = false;
+  // Light of it varies little from texel to texel, so that neighbours may look at other samples each.
+  bool soft = false;
+  scene::Box box = {};                    // of the patches [m]
+  std::vector<LampSamples> samples = {};  // one, or of a soft one as many as receivers have sets
 };
 
-// What hangs together of the triangles that emit, of one body; a triangle that is written twice shines once. If
-// there are more than `most`, those that lie near each other are one, always the same ones.
-std::vector<AreaLamp> find_area_lamps(const scene::Scene& scene, std::size_t most);
+// Puts samples on the patches behind those that there are, which `shift` sets off against others (its x in
+// -0.5..0.5 of a sample's share); and finds their box.
+void place_samples(AreaLamp& lamp, const glm::vec2& shift = glm::vec2(0));
+
+// What is outside of the scene is so far away [its radii]: shadows of what is a metre apart are parallel to a
+// twentieth of a degree.
+constexpr float far_away = 1000;
+
+// What hangs together of the triangles that emit, of one body and light; a triangle that is written twice
+// shines once. If there are more than `most`, those that lie near each other are one, always the same ones.
+// Behind them the scene's punctual lights, each a lamp, and the sky's lamps, with samples of so many sets.
+std::vector<AreaLamp> find_area_lamps(const scene::Scene& scene, std::size_t most, std::uint32_t sets = 1);
 
 }  // namespace lichtveld::lightfield

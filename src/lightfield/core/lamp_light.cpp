@@ -4,10 +4,12 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "core/parallel.hpp"
 #include "lichtveld/progress/progress.hpp"
+#include "lichtveld/scene/lights.hpp"
 #include "lichtveld/scene/ray_queue.hpp"
 #include "lichtveld/scene/slabs.hpp"
 
@@ -78,10 +80,16 @@ bool may_hide(const scene::Box& box, const scene::Box& places, const scene::Box&
 }  // namespace
 
 LampLight::LampLight(const scene::RayIndex& index, const scene::Scene& scene,
-                     std::span<const TexelRecord> receivers, std::uint32_t size)
-    : index_(index), scene_(scene), receivers_(receivers), irradiance_(receivers.size(), glm::vec3(0)) {
+                     std::span<const TexelRecord> receivers, std::uint32_t size, const SampleSets& sets)
+    : index_(index),
+      scene_(scene),
+      receivers_(receivers),
+      sets_(sets),
+      irradiance_(receivers.size(), glm::vec3(0)),
+      soft_(receivers.size(), glm::vec3(0)) {
   find_blocks(size);
-  auto shapes = find_area_lamps(scene, most_lamps);
+  find_neighbours(size);
+  auto shapes = find_area_lamps(scene, most_lamps, sets.count);
   std::size_t patches = 0;
   for (const auto& shape : shapes) patches += shape.patches.size();
   for (auto& shape : shapes) {
@@ -124,19 +132,58 @@ void LampLight::find_blocks(std::uint32_t size) {
   }
 }
 
-void LampLight::light(const scene::Offsets& offsets, const Moves& moves) {
+void LampLight::find_neighbours(std::uint32_t size) {
+  const auto first = [&](std::uint32_t block) -> const TexelRecord& {
+    return receivers_[order_[blocks_[block].first]];
+  };
+  const std::uint32_t squares = (size + block_side - 1) / block_side;
+  std::vector<std::vector<std::uint32_t>> in_square(std::size_t{squares} * squares);
+  const auto square = [&](std::uint32_t block) {
+    const std::uint32_t atlas = first(block).atlas;
+    return std::pair{static_cast<int>(atlas % size / block_side), static_cast<int>(atlas / size / block_side)};
+  };
+  const auto at = [&](int x, int y) -> std::vector<std::uint32_t>* {
+    const auto side = static_cast<int>(squares);
+    if (x < 0 || y < 0 || x >= side || y >= side) return nullptr;
+    return &in_square[static_cast<std::size_t>(y * side + x)];
+  };
+  const auto count = static_cast<std::uint32_t>(blocks_.size());
+  beside_.resize(count);
+  for (std::uint32_t block = 0; block < count; ++block)
+    if (first(block).atlas != no_atlas_texel) at(square(block).first, square(block).second)->push_back(block);
+  for (std::uint32_t block = 0; block < count; ++block) {
+    if (first(block).atlas == no_atlas_texel) continue;
+    const auto [x, y] = square(block);
+    for (int dy = -1; dy <= 1; ++dy)
+      for (int dx = -1; dx <= 1; ++dx)
+        if (const auto* there = at(x + dx, y + dy))
+          for (const auto other : *there)
+            if (other != block && first(other).body == first(block).body &&
+                glm::distance(first(other).position, first(block).position) <= block_reach * first(block).side)
+              beside_[block].push_back(other);
+  }
+}
+
+void LampLight::light(const scene::Offsets& offsets, const scene::Scales& scales, const Moves& moves) {
   offsets_ = offsets;
-  std::vector<char> touched(receivers_.size(), 0);
-  progress::Work work("light straight from lamps", lamps_.size());
-  for (auto& lamp : lamps_) {
-    const auto by_lamp = light(lamp, moves);
-    for (std::size_t i = 0; i < touched.size(); ++i) touched[i] |= by_lamp[i];
-    work.done();
+  scales_ = scales;
+  std::vector<char> touched(receivers_.size(), moves.dimmed);
+  if (moves.any()) {
+    progress::Work work("light straight from lamps", lamps_.size());
+    for (auto& lamp : lamps_) {
+      const auto by_lamp = light(lamp, moves);
+      for (std::size_t i = 0; i < touched.size(); ++i) touched[i] |= by_lamp[i];
+      work.done();
+    }
   }
   for_each_index(0, static_cast<std::uint32_t>(receivers_.size()), receivers_of_a_task, [&](std::uint32_t i) {
     if (!touched[i]) return;
-    irradiance_[i] = glm::vec3(0);
-    for (const auto& lamp : lamps_) irradiance_[i] += lamp.arriving[i];
+    irradiance_[i] = soft_[i] = glm::vec3(0);
+    for (const auto& lamp : lamps_) {
+      const glm::vec3 light = scales_[lamp.shape.light] * lamp.arriving[i];
+      irradiance_[i] += light;
+      if (lamp.shape.soft) soft_[i] += light;
+    }
   });
 }
 
@@ -155,11 +202,11 @@ std::vector<char> LampLight::light(Lamp& lamp, const Moves& moves) {
         }
   for (std::uint32_t body = 0; body < bodies; ++body) {
     if (!moved(body)) continue;
+    find_own(lamp, body);
     const auto& blocks = blocks_of_body_[body];
-    for_each_index(blocks.first, blocks.end, blocks_of_a_task, [&](std::uint32_t i) {
-      find_own(lamp, body, blocks_[i]);
-      for (auto at = blocks_[i].first; at < blocks_[i].end; ++at) touched[order_[at]] = reset;
-    });
+    if (blocks.size() == 0) continue;
+    for (auto at = blocks_[blocks.first].first; at < blocks_[blocks.end - 1].end; ++at)
+      touched[order_[at]] = reset;
   }
   for (std::uint32_t of = 0; of < bodies; ++of)
     for (std::uint32_t body = 1; body < bodies; ++body) {
@@ -202,32 +249,83 @@ LampLight::Bits LampLight::shining(const Lamp& lamp, std::uint32_t receiver) con
       is_above(box, record.normal, record.position + offsets_[record.body]))
     return all_samples;
   Samples weights;
-  weigh(lamp.shape.samples, offsets_[lamp.shape.body] - (record.position + offsets_[record.body]), record,
-        weights);
+  weigh(lamp, receiver, weights);
   Bits bits = 0;
   for (std::uint32_t i = 0; i < samples_of_lamp; ++i) bits |= Bits{weights[i] > 0} << i;
   // A sliver of the lamp between samples that are below the horizon: all of them stand for it.
   return bits == 0 ? all_samples : bits;
 }
 
-void LampLight::find_own(Lamp& lamp, std::uint32_t body, const Block& block) const {
+// E without anything in between.
+glm::vec3 LampLight::unshadowed(const Lamp& lamp, std::uint32_t receiver) const {
+  const auto& record = receivers_[receiver];
+  const glm::vec3 at = record.position + offsets_[record.body], &lamp_at = offsets_[lamp.shape.body];
+  if (lamp.shape.punctual)
+    return scene::irradiance_of(*lamp.shape.punctual, lamp_at, at, record.normal, record.face);
+  glm::vec3 sum(0);
+  Samples weights;
+  const auto& intensity = samples(lamp, receiver).intensity;
+  if (lamp.sampled) {
+    weigh(lamp, receiver, weights);
+    for (std::uint32_t i = 0; i < samples_of_lamp; ++i) sum += intensity[i] * weights[i];
+  } else {
+    for (const auto& patch : lamp.shape.patches)
+      sum += irradiance_of(patch, at - lamp_at, record.normal, record.face);
+  }
+  if (!lamp.shape.coloured || sum == glm::vec3(0)) return sum;
+  weigh(lamp, receiver, weights);
+  glm::vec3 colour(0), even(0);
+  float all = 0;
+  for (std::uint32_t i = 0; i < samples_of_lamp; ++i) {
+    colour += weights[i] * intensity[i];
+    even += intensity[i];
+    all += weights[i];
+  }
+  return sum * (all > 0 ? colour / all : even / static_cast<float>(samples_of_lamp));
+}
+
+// What each sample counts for there, beside its intensity.
+void LampLight::weigh(const Lamp& lamp, std::uint32_t receiver, Samples& weights) const {
+  const auto& record = receivers_[receiver];
+  const auto& samples = this->samples(lamp, receiver);
+  const glm::vec3 to = offsets_[lamp.shape.body] - (record.position + offsets_[record.body]);
+  if (!lamp.shape.punctual) return lightfield::weigh(samples, to, record, weights);
+  weights.fill(0);
+  for (std::uint32_t i = 0; i < (is_point(lamp) ? 1 : samples_of_lamp); ++i) {
+    const glm::vec3 way = glm::vec3(samples.x[i], samples.y[i], samples.z[i]) + to;
+    const float squared = glm::dot(way, way);
+    if (squared <= 0 || glm::dot(way, record.face) <= 0) continue;
+    weights[i] = std::max(glm::dot(way, record.normal), 0.0f) / (squared * std::sqrt(squared));
+  }
+}
+
+// Blocks that see the lamp otherwise than those around them look at all samples: the rim of a small part that
+// is seen, or hidden, may lie between those that they have looked at.
+void LampLight::find_own(Lamp& lamp, std::uint32_t body) const {
+  const auto& blocks = blocks_of_body_[body];
+  std::vector<Sight> sights(blocks.size());
+  for_each_index(blocks.first, blocks.end, blocks_of_a_task,
+                 [&](std::uint32_t i) { sights[i - blocks.first] = find_own(lamp, body, blocks_[i], false); });
+  const auto differs = [&](std::uint32_t block) {
+    const Sight own = sights[block - blocks.first];
+    return (own == Sight::dark || own == Sight::lit) &&
+           std::ranges::any_of(beside_[block], [&](std::uint32_t other) {
+             const Sight sight = sights[other - blocks.first];
+             return sight != Sight::none && sight != own;
+           });
+  };
+  for_each_index(blocks.first, blocks.end, blocks_of_a_task, [&](std::uint32_t i) {
+    if (differs(i)) find_own(lamp, body, blocks_[i], true);
+  });
+}
+
+LampLight::Sight LampLight::find_own(Lamp& lamp, std::uint32_t body, const Block& block, bool whole) const {
   BlockBits looked_at{};
   bool meets_body = false;
   for (std::uint32_t i = 0; i < block.size(); ++i) {
     const std::uint32_t receiver = order_[block.first + i];
     const auto& record = receivers_[receiver];
-    glm::vec3& unshadowed = lamp.unshadowed[receiver];
-    const glm::vec3 place = record.position + offsets_[record.body] - offsets_[lamp.shape.body];
-    unshadowed = glm::vec3(0);
-    if (lamp.sampled) {
-      Samples weights;
-      weigh(lamp.shape.samples, -place, record, weights);
-      for (std::uint32_t k = 0; k < samples_of_lamp; ++k)
-        unshadowed += lamp.shape.samples.intensity[k] * weights[k];
-    } else {
-      for (const auto& patch : lamp.shape.patches)
-        unshadowed += irradiance_of(patch, place, record.normal, record.face);
-    }
+    const glm::vec3 unshadowed = lamp.unshadowed[receiver] = this->unshadowed(lamp, receiver);
     const bool meets = body != 0 && index_.may_meet_own_body(record.triangle, record.face);
     if (unshadowed == glm::vec3(0) || contact(receiver, 0) || (meets && contact(receiver, body))) continue;
     looked_at[i] = shining(lamp, receiver);
@@ -235,7 +333,7 @@ void LampLight::find_own(Lamp& lamp, std::uint32_t body, const Block& block) con
   }
   BlockBits left = looked_at;
   const auto leave_out_hidden = [&](std::uint32_t by) {
-    const auto out_of_sight = hidden(lamp, by, block, left, left);
+    const auto out_of_sight = hidden(lamp, by, block, left, left, whole);
     for (std::uint32_t i = 0; i < block.size(); ++i) left[i] &= ~out_of_sight[i];
   };
   leave_out_hidden(0);
@@ -245,16 +343,22 @@ void LampLight::find_own(Lamp& lamp, std::uint32_t body, const Block& block) con
     // Whether a sample that brings no light is seen does not matter.
     lamp.own[receiver] = lamp.seen[receiver] = looked_at[i] == 0 ? 0 : left[i] | ~looked_at[i];
   }
+  const auto any = [](const BlockBits& bits) {
+    return std::ranges::any_of(bits, [](Bits one) { return one != 0; });
+  };
+  return !any(looked_at)     ? Sight::none
+         : left == looked_at ? Sight::lit
+         : any(left)         ? Sight::mixed
+                             : Sight::dark;
 }
 
 // Of the samples that each receiver of a block looks at those that a body hides, which `may_be` are all of,
-// too.
+// too. `whole`: looks at all of them in any case.
 LampLight::BlockBits LampLight::hidden(const Lamp& lamp, std::uint32_t body, const Block& block,
-                                       const BlockBits& looked_at, const BlockBits& may_be) const {
+                                       const BlockBits& looked_at, const BlockBits& may_be, bool whole) const {
   struct Of {
     std::uint32_t in_block, sample;
   };
-  const auto& samples = lamp.shape.samples;
   const glm::vec3& lamp_at = offsets_[lamp.shape.body];
   BlockBits found{};
   scene::RayQueue<Of> queue;
@@ -265,7 +369,9 @@ LampLight::BlockBits LampLight::hidden(const Lamp& lamp, std::uint32_t body, con
   };
   const auto look = [&](std::uint32_t i, Bits some) {
     if (some == 0) return;
-    const glm::vec3 place = start(order_[block.first + i]);
+    const std::uint32_t receiver = order_[block.first + i];
+    const auto& samples = this->samples(lamp, receiver);
+    const glm::vec3 place = start(receiver);
     for (; some != 0; some &= some - 1) {
       const auto sample = static_cast<std::uint32_t>(std::countr_zero(some));
       const glm::vec3 there = glm::vec3(samples.x[sample], samples.y[sample], samples.z[sample]) + lamp_at;
@@ -279,8 +385,9 @@ LampLight::BlockBits LampLight::hidden(const Lamp& lamp, std::uint32_t body, con
   }
   queue.flush(trace);
   for (const Bits bits : found) hid += std::popcount(bits);
-  if (looked >= rays_that_decide && hid == 0) return found;
-  if (looked >= rays_that_decide && hid == looked) return may_be;
+  const bool decided = !whole && looked >= rays_that_decide;
+  if (decided && hid == 0) return found;
+  if (decided && hid == looked) return may_be;
   for (std::uint32_t i = 0; i < block.size(); ++i) look(i, may_be[i] & ~(eighth << i % 8));
   queue.flush(trace);
   return found;
@@ -307,7 +414,6 @@ void LampLight::find_hidden(const Lamp& lamp, std::uint32_t body, std::uint32_t 
   const scene::Box box = shifted(scene_.bodies[body].box, offsets_[body], skin),
                    lamp_box = shifted(lamp.shape.box, lamp_at, 0);
   if (!may_hide(box, shifted(block.box, offsets_[of], skin), lamp_box)) return;
-  const auto& samples = lamp.shape.samples;
   BlockBits looked_at{}, may_be{};
   for (std::uint32_t i = 0; i < block.size(); ++i) {
     const std::uint32_t receiver = order_[block.first + i];
@@ -321,6 +427,7 @@ void LampLight::find_hidden(const Lamp& lamp, std::uint32_t body, std::uint32_t 
       continue;
     }
     const glm::vec3 to = lamp_at - place;
+    const auto& samples = this->samples(lamp, receiver);
     Samples x, y, z, entries;
     for (std::uint32_t k = 0; k < samples_of_lamp; ++k) {
       x[k] = 1 / (samples.x[k] + to.x);
@@ -348,31 +455,40 @@ glm::vec3 LampLight::arriving(const Lamp& lamp, std::uint32_t receiver) const {
 }
 
 // Of some samples, by what each would bring.
-float LampLight::share_seen(const Lamp& lamp, std::uint32_t receiver, Bits some) const {
-  const auto& record = receivers_[receiver];
-  const auto& samples = lamp.shape.samples;
+glm::vec3 LampLight::share_seen(const Lamp& lamp, std::uint32_t receiver, Bits some) const {
   const Bits seen = lamp.seen[receiver] & some;
-  const glm::vec3 to = offsets_[lamp.shape.body] - (record.position + offsets_[record.body]);
   Samples weights;
-  weigh(samples, to, record, weights);
+  weigh(lamp, receiver, weights);
   float all = 0, visible = 0;
+  glm::vec3 all_colours(0), visible_colours(0);
   for (std::uint32_t i = 0; i < samples_of_lamp; ++i) {
     all += (some >> i & 1) ? weights[i] : 0.0f;
     visible += (seen >> i & 1) ? weights[i] : 0.0f;
   }
   // Where no sample shines here, a sliver of the lamp may still.
-  return all > 0 ? visible / all
-                 : static_cast<float>(std::popcount(seen)) / static_cast<float>(std::popcount(some));
+  const float share = all > 0
+                          ? visible / all
+                          : static_cast<float>(std::popcount(seen)) / static_cast<float>(std::popcount(some));
+  if (!lamp.shape.coloured || !(all > 0)) return glm::vec3(share);
+  for (Bits left = some; left != 0; left &= left - 1) {
+    const auto i = static_cast<std::uint32_t>(std::countr_zero(left));
+    const glm::vec3 light = weights[i] * samples(lamp, receiver).intensity[i];
+    all_colours += light;
+    visible_colours += (seen >> i & 1) ? light : glm::vec3(0);
+  }
+  return visible_colours / glm::max(all_colours, glm::vec3(std::numeric_limits<float>::min()));
 }
 
-glm::vec3 LampLight::half_difference(std::uint32_t receiver) const {
+glm::vec3 LampLight::half_difference(std::uint32_t receiver, bool soft) const {
   constexpr Bits even = 0x5555555555555555;
   glm::vec3 sum(0);
   for (const auto& lamp : lamps_) {
     const Bits seen = lamp.seen[receiver];
-    if (seen == 0 || seen == all_samples || lamp.unshadowed[receiver] == glm::vec3(0)) continue;
-    sum += lamp.unshadowed[receiver] * (share_seen(lamp, receiver, even) - share_seen(lamp, receiver, ~even)) /
-           2.0f;
+    if (lamp.shape.soft != soft || seen == 0 || seen == all_samples || is_point(lamp) ||
+        lamp.unshadowed[receiver] == glm::vec3(0))
+      continue;
+    sum += scales_[lamp.shape.light] * lamp.unshadowed[receiver] *
+           (share_seen(lamp, receiver, even) - share_seen(lamp, receiver, ~even)) / 2.0f;
   }
   return sum;
 }

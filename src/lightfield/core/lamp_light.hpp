@@ -4,7 +4,7 @@
 // McGuire 2018, "Combining Analytic Direct Illumination and Stochastic Shadows"). Which points a receiver sees
 // is kept as bits: those that what stands still leaves, and those that each body hides, so that a move redoes
 // that body's bits alone. Up to 16 receivers near each other look at an eighth of the points each, their
-// neighbours at others, and at all only where these do not agree.
+// neighbours at others, and at all only where these do not agree, or blocks beside them see the lamp otherwise.
 #pragma once
 
 #include <array>
@@ -21,6 +21,12 @@
 
 namespace lichtveld::lightfield {
 
+// Neighbours share the samples of soft lamps out among `count` sets: which is each receiver's.
+struct SampleSets {
+  std::uint32_t count = 1;
+  std::span<const std::uint32_t> of = {};  // as many as there are receivers, or none
+};
+
 class LampLight {
  public:
   // More are taken together by where they lie: each costs so many bytes and a closed form a receiver.
@@ -29,15 +35,19 @@ class LampLight {
 
   // All of these must outlive it. `receivers`: where light arrives, on an atlas of size * size texels.
   LampLight(const scene::RayIndex& index, const scene::Scene& scene, std::span<const TexelRecord> receivers,
-            std::uint32_t size);
+            std::uint32_t size, const SampleSets& sets = {});
 
-  // Bodies are where `offsets` say; `moves`: since the last time.
-  void light(const scene::Offsets& offsets, const Moves& moves);
+  // Bodies are where `offsets` say, lights give `scales` times what the file says; `moves`: since the last
+  // time.
+  void light(const scene::Offsets& offsets, const scene::Scales& scales, const Moves& moves);
 
-  // E [W m^-2] of each receiver.
+  // E [W m^-2] of each receiver; and of that what soft lamps bring, which differs from neighbour to neighbour
+  // by their samples.
   const std::vector<glm::vec3>& irradiance() const { return irradiance_; }
-  // By how much each half of the sample points differs from both: for split_half_error [W m^-2], signed.
-  glm::vec3 half_difference(std::uint32_t receiver) const;
+  const std::vector<glm::vec3>& soft_irradiance() const { return soft_; }
+  // By how much each half of the sample points differs from both: for split_half_error [W m^-2], signed. Of
+  // lamps that are soft, or of the others.
+  glm::vec3 half_difference(std::uint32_t receiver, bool soft) const;
 
  private:
   using Bits = std::uint64_t;  // a sample each
@@ -61,30 +71,47 @@ class LampLight {
   static constexpr std::uint32_t most_receivers = 16;  // of a block
   using BlockBits = std::array<Bits, most_receivers>;  // of each of its receivers
 
+  // How a block's receivers see a lamp, by the samples that they have looked at.
+  enum class Sight : char { none, dark, lit, mixed };  // none: nothing would arrive anyhow
+
   void find_blocks(std::uint32_t size);
+  void find_neighbours(std::uint32_t size);
   // True for each receiver to which another light may arrive now.
   std::vector<char> light(Lamp& lamp, const Moves& moves);
-  void find_own(Lamp& lamp, std::uint32_t body, const Block& block) const;
+  void find_own(Lamp& lamp, std::uint32_t body) const;
+  Sight find_own(Lamp& lamp, std::uint32_t body, const Block& block, bool whole) const;
   std::vector<Hidden> find_hidden(const Lamp& lamp, std::uint32_t body, std::uint32_t of) const;
   void find_hidden(const Lamp& lamp, std::uint32_t body, std::uint32_t of, const Block& block,
                    std::vector<Hidden>& found) const;
+  // Whether one sample alone matters.
+  static bool is_point(const Lamp& lamp) {
+    return lamp.shape.punctual && lamp.shape.box.min == lamp.shape.box.max;
+  }
+  const LampSamples& samples(const Lamp& lamp, std::uint32_t receiver) const {
+    return lamp.shape.samples[lamp.shape.samples.size() > 1 ? sets_.of[receiver] : 0];
+  }
+  glm::vec3 unshadowed(const Lamp& lamp, std::uint32_t receiver) const;
+  void weigh(const Lamp& lamp, std::uint32_t receiver, std::array<float, samples_of_lamp>& weights) const;
   Bits shining(const Lamp& lamp, std::uint32_t receiver) const;
   BlockBits hidden(const Lamp& lamp, std::uint32_t body, const Block& block, const BlockBits& looked_at,
-                   const BlockBits& may_be) const;
+                   const BlockBits& may_be, bool whole = false) const;
   glm::vec3 start(std::uint32_t receiver) const;
   bool contact(std::uint32_t receiver, std::uint32_t body) const;
   glm::vec3 arriving(const Lamp& lamp, std::uint32_t receiver) const;
-  float share_seen(const Lamp& lamp, std::uint32_t receiver, Bits some) const;
+  glm::vec3 share_seen(const Lamp& lamp, std::uint32_t receiver, Bits some) const;
 
   const scene::RayIndex& index_;
   const scene::Scene& scene_;
   std::span<const TexelRecord> receivers_;
+  const SampleSets sets_;
   std::vector<std::uint32_t> order_;  // of receivers: body by body
   std::vector<Block> blocks_;
   std::vector<Range> blocks_of_body_;
+  std::vector<std::vector<std::uint32_t>> beside_;  // of each block those around it
   scene::Offsets offsets_;
+  scene::Scales scales_;
   std::vector<Lamp> lamps_;
-  std::vector<glm::vec3> irradiance_;
+  std::vector<glm::vec3> irradiance_, soft_;
 };
 
 }  // namespace lichtveld::lightfield

@@ -1,6 +1,7 @@
 #include "lichtveld/lightfield/light_field.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 #include <utility>
 
@@ -21,9 +22,23 @@ void LightField::place(const scene::Offsets& offsets) {
   if (light_ != Light::unknown) light_ = Light::moved;
 }
 
+void LightField::dim(const scene::Scales& scales) {
+  if (scales.size() != scales_.size())
+    throw std::invalid_argument(std::to_string(scales.size()) + " lights are dimmed, and the scene has " +
+                                std::to_string(scales_.size()));
+  for (const auto& scale : scales)
+    if (!(std::min({scale.r, scale.g, scale.b}) >= 0 && std::isfinite(scale.r + scale.g + scale.b)))
+      throw std::invalid_argument("a light is dimmed to what is no number from 0 on");
+  if (scales == scales_) return;
+  if (direct_ == Direct::psf)
+    throw std::invalid_argument("--direct psf knows no lights that could be dimmed; leave it out");
+  scales_ = scales;
+  if (light_ != Light::unknown) light_ = Light::moved;
+}
+
 Moves LightField::moves_since() const {
   if (light_ == Light::unknown) return {};
-  Moves moves{.all = false};
+  Moves moves{.all = false, .dimmed = scales_ != known_scales_};
   for (std::uint32_t body = 0; body < offsets_.size(); ++body)
     if (offsets_[body] != known_[body]) moves.bodies.push_back({body, known_[body], offsets_[body]});
   return moves;
@@ -49,6 +64,7 @@ void LightField::advance(const Enough& enough) {
   const auto before = std::exchange(light_, Light::unknown);
   const bool settled = compute(before, moves, enough, solution_);
   known_ = offsets_;
+  known_scales_ = scales_;
   light_ = settled ? Light::settled : Light::rising;
 }
 

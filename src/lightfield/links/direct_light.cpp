@@ -47,10 +47,10 @@ DirectLight::DirectLight(const gpu::Device& device, const scene::Scene& scene, c
   frame.submit_and_wait();
 }
 
-void DirectLight::light(const scene::Offsets& offsets, const Moves& moves) {
+void DirectLight::light(const scene::Offsets& offsets, const scene::Scales& scales, const Moves& moves) {
   if (!exact_) return;
   const gpu::TimeLedger::Stage stage(device_.times(), "direct_light");
-  exact_->light(offsets, moves);
+  exact_->light(offsets, scales, moves);
   const auto irradiance = irradiance_.as<glm::vec4>();
   for (std::size_t texel = 0; texel < irradiance.size(); ++texel)
     irradiance[texel] = glm::vec4(exact_->irradiance()[texel], 0);
@@ -59,7 +59,8 @@ void DirectLight::light(const scene::Offsets& offsets, const Moves& moves) {
 void DirectLight::add_half_difference(std::span<glm::vec4> atlas) const {
   if (!exact_) return;
   for (std::uint32_t texel = 0; texel < records_.count(); ++texel)
-    atlas[records_[texel].atlas] += glm::vec4(exact_->half_difference(texel), 0);
+    atlas[records_[texel].atlas] +=
+        glm::vec4(exact_->half_difference(texel, false) + exact_->half_difference(texel, true), 0);
 }
 
 void DirectLight::sum(gpu::Frame& frame, const LightMap& map, const LinkTable& table,

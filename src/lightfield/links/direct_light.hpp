@@ -21,8 +21,8 @@ class DirectLight {
   // Of a table that links nothing yet. All of these must outlive it.
   DirectLight(const gpu::Device& device, const scene::Scene& scene, const LinkTable& table, Direct way);
 
-  // Exact: bodies are where `offsets` say; `moves`: since the last time. Otherwise links tell.
-  void light(const scene::Offsets& offsets, const Moves& moves);
+  // Exact: as LampLight::light. Otherwise links tell.
+  void light(const scene::Offsets& offsets, const scene::Scales& scales, const Moves& moves);
 
   // By the directions: sums it up afresh. `directions`: vec4 a pair: xyz; w:
   // solid angle [sr]. Costs links: a load of half a word each.

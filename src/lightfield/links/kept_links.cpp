@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "lichtveld/progress/progress.hpp"
+#include "lichtveld/scene/lights.hpp"
 
 namespace lichtveld::lightfield {
 
@@ -67,6 +68,14 @@ KeptLinks::KeptLinks(const gpu::Device& device, const scene::Scene& scene, const
   layered();
 }
 
+void KeptLinks::link(const scene::Offsets& to, const scene::Scales& scales, const Moves& moves,
+                     Solution& solution) {
+  if (moves.any()) link(to, moves, solution);
+  if (moves.dimmed || scales != scene::full(geometry_.scene))
+    put_emission(device_, map_, geometry_.scene, records_, scales);
+  direct_.light(to, scales, moves);
+}
+
 void KeptLinks::link(const scene::Offsets& to, const Moves& moves, Solution& solution) {
   const auto sphere_before = geometry_.sphere;
   gpu::Frame placing(device_, {"links", "place"});
@@ -98,7 +107,6 @@ void KeptLinks::link(const scene::Offsets& to, const Moves& moves, Solution& sol
     for (const auto& move : moves.bodies) route(changed_patches(move), tiles, solution);
   }
   placing.wait();
-  direct_.light(to, moves);
 }
 
 void KeptLinks::sum_direct() {

@@ -22,7 +22,7 @@ class KeptLinks {
 
   // Brings the links to where the bodies are, and what it counts into `solution`. Should it throw, all of them
   // have to be linked again (moves.all).
-  void link(const scene::Offsets& to, const Moves& moves, Solution& solution);
+  void link(const scene::Offsets& to, const scene::Scales& scales, const Moves& moves, Solution& solution);
   // Sums direct light up afresh, where links have changed since: what they have kept, by construction.
   void sum_direct();
   // As LightField::check_links, once all is linked.
@@ -48,6 +48,7 @@ class KeptLinks {
     bool received = false;  // RouteLinks::read_receivers, since the last move
   };
 
+  void link(const scene::Offsets& to, const Moves& moves, Solution& solution);
   Patch whole_patch(std::uint32_t pair) const;
   std::vector<Patch> whole_patches() const;
   std::vector<Patch> changed_patches(const Moves::Move& move) const;

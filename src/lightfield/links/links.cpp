@@ -10,7 +10,7 @@
 namespace lichtveld::lightfield {
 
 Links::Links(const gpu::Device& device, const scene::Scene& scene, const Settings& settings)
-    : LightField(scene.bodies.size()),
+    : LightField(scene, settings.direct.value_or(Direct::exact)),
       device_((check_on(device, settings), device)),
       begun_(device.times().so_far()),
       settings_(settings),
@@ -20,7 +20,7 @@ Links::Links(const gpu::Device& device, const scene::Scene& scene, const Setting
       gather_(device, links_.table()) {}
 
 bool Links::compute(Light before, const Moves& moves, const Enough& enough, Solution& solution) {
-  if (before == Light::unknown || before == Light::moved) links_.link(offsets(), moves, solution);
+  if (before == Light::unknown || before == Light::moved) links_.link(offsets(), scales(), moves, solution);
   const bool settled = converge(before, enough, solution);
   present();
   return settled;

@@ -66,6 +66,14 @@ LightMap::LightMap(const gpu::Device& device, const TexelRecords& records)
   gpu::fill<std::uint32_t>(device, source, atlas_sources(records));
 }
 
+void put_emission(const gpu::Device& device, const LightMap& map, const scene::Scene& scene,
+                  const TexelRecords& records, const scene::Scales& scales) {
+  std::vector<glm::vec4> emission(std::size_t{map.size} * map.size, glm::vec4(0));
+  for (const auto& record : records.all())
+    emission[record.atlas] = glm::vec4(scales[scene.surfaces[record.surface].light] * record.emission, 1);
+  gpu::fill<glm::vec4>(device, map.emission, emission);
+}
+
 void check_on(const gpu::Device& device, const Settings& settings) {
   const auto largest = std::max(settings.size, settings.raster());
   if (largest > device.summary().max_image_size)

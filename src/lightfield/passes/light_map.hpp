@@ -34,6 +34,10 @@ struct LightMap {
   gpu::Image presented;         // sRGB RGBA8: tone-mapped L
 };
 
+// Writes `emission` as lights give `scales` times what the file says.
+void put_emission(const gpu::Device& device, const LightMap& map, const scene::Scene& scene,
+                  const TexelRecords& records, const scene::Scales& scales);
+
 // Throws std::invalid_argument if the device cannot do images of that size.
 void check_on(const gpu::Device& device, const Settings& settings);
 

@@ -1,11 +1,19 @@
 #include "passes/presenter.hpp"
 
 #include "lichtveld/lightfield/presenter.hpp"
+#include "lichtveld/scene/lights.hpp"
 
 namespace lichtveld::lightfield {
 
 Presenter::Presenter(const gpu::Device& device, const scene::Scene& scene, const TexelRecords& records)
-    : device_(device), map_(device, records), geometry_texture_(device), brdf_(device), tone_map_(device) {
+    : device_(device),
+      scene_(scene),
+      records_(records),
+      scales_(scene::full(scene)),
+      map_(device, records),
+      geometry_texture_(device),
+      brdf_(device),
+      tone_map_(device) {
   // Where bodies are changes nothing of what is shown here: albedo, emission, and which texels face the same
   // way.
   Geometry geometry(device, scene);
@@ -14,6 +22,12 @@ Presenter::Presenter(const gpu::Device& device, const scene::Scene& scene, const
   frame.clear("present", map_.cover, {});
   geometry_texture_.record(frame, geometry, map_, {});
   frame.submit_and_wait();
+}
+
+void Presenter::dim(const scene::Scales& scales) {
+  if (scales == scales_) return;
+  scales_ = scales;
+  put_emission(device_, map_, scene_, records_, scales);
 }
 
 Shown Presenter::show(const TexelView& irradiance, std::span<const float> covered) {

@@ -13,8 +13,11 @@ namespace lichtveld::lightfield {
 
 class Presenter {
  public:
-  // The device must outlive it.
+  // All of these must outlive it.
   Presenter(const gpu::Device& device, const scene::Scene& scene, const TexelRecords& records);
+
+  // Lights give `scales` times what the file says from now on.
+  void dim(const scene::Scales& scales);
 
   // rgb: E [W m^-2], as wide as the atlas. `covered`: texels on which something lies show their nearest open
   // one (see GeometryTexture::find_shown), a value above 0 each; as many as the atlas has texels, or none.
@@ -22,6 +25,9 @@ class Presenter {
 
  private:
   const gpu::Device& device_;
+  const scene::Scene& scene_;
+  const TexelRecords& records_;
+  scene::Scales scales_;
   LightMap map_;
   GeometryTexture geometry_texture_;
   Brdf brdf_;

@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/frame.hpp"
 #include "core/parallel.hpp"
 #include "lichtveld/scene/ray_queue.hpp"
 #include "lichtveld/scene/slabs.hpp"

@@ -76,12 +76,6 @@ void sort_alike(std::span<glm::dvec2> points) {
 
 }  // namespace
 
-glm::mat3 frame_about(const glm::vec3& n) {
-  const float sign = std::copysign(1.0f, n.z), a = -1 / (sign + n.z), b = n.x * n.y * a;
-  return {glm::vec3(1 + sign * n.x * n.x * a, sign * b, -sign * n.x), glm::vec3(b, sign + n.y * n.y * a, -n.y),
-          n};
-}
-
 RaySets::RaySets(std::uint32_t rays, std::uint32_t sets, std::uint64_t seed) : rays_(rays) {
   std::mt19937_64 bits(seed);
   const auto random = [&] { return static_cast<double>(bits() >> 11) * 0x1p-53; };

@@ -9,9 +9,6 @@
 
 namespace lichtveld::lightfield {
 
-// A right-handed frame about a unit normal: Duff et al. 2017, "Building an Orthonormal Basis, Revisited".
-glm::mat3 frame_about(const glm::vec3& normal);
-
 // `sets` sets of `rays` unit vectors about (0, 0, 1), cosine-distributed, so that each stands for as much of
 // the irradiance. The points of all sets together are as evenly spread as those of one. The first half of a
 // set's rays and the second are turned at random, each by itself, and so tell the error of their mean. Rays of

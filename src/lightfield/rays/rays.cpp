@@ -19,10 +19,26 @@ std::uint32_t side_of(std::uint32_t sets) {
   return sets == 16 ? 4 : sets == 4 ? 2 : 1;
 }
 
+// Of soft lamps' samples: as many as of directions in each of four blocks that are beside each other.
+std::uint32_t sample_set_count(const Settings& settings) {
+  return settings.rays.sets > 1 ? 4 * settings.rays.sets : 1;
+}
+
+std::vector<std::uint32_t> sample_sets(const Rows& rows, const Settings& settings) {
+  std::vector<std::uint32_t> sets;
+  const std::uint32_t side = side_of(settings.rays.sets);
+  for (std::uint32_t row = 0; row < rows.count(); ++row) {
+    const std::uint32_t atlas = rows[row].atlas, x = atlas % settings.size / side,
+                        y = atlas / settings.size / side;
+    sets.push_back(settings.rays.sets > 1 ? 4 * rows.set(row) + 2 * (y % 2) + x % 2 : 0);
+  }
+  return sets;
+}
+
 }  // namespace
 
 Rays::Rays(const gpu::Device& device, const scene::Scene& scene, const Settings& settings)
-    : LightField(scene.bodies.size()),
+    : LightField(scene, settings.direct.value_or(Direct::exact)),
       device_(device),
       begun_(device.times().so_far()),
       scene_(scene),
@@ -34,7 +50,8 @@ Rays::Rays(const gpu::Device& device, const scene::Scene& scene, const Settings&
       sets_(settings.psf / 2, settings.rays.sets, settings.seed),
       links_(*index_, scene, rows_, sets_),
       filter_(rows_, links_, side_of(settings.rays.sets)),
-      lamps_(*index_, scene, rows_.all(), settings.size),
+      sample_sets_(sample_sets(rows_, settings)),
+      lamps_(*index_, scene, rows_.all(), settings.size, {sample_set_count(settings), sample_sets_}),
       gather_(rows_, links_, settings.direct.value_or(Direct::exact)),
       averages_(rows_.count()),
       irradiance_(std::size_t{settings.size} * settings.size, glm::vec4(0)) {}
@@ -55,16 +72,22 @@ std::uint64_t Rays::bytes() const {
 bool Rays::compute(Light before, const Moves& moves, const Enough& enough, Solution& solution) {
   auto& times = device_.times();
   if (before == Light::unknown || before == Light::moved) {
-    times.time("links", [&] { links_.link(offsets(), moves); });
-    if (gather_.direct() == Direct::exact) times.time("direct_light", [&] { lamps_.light(offsets(), moves); });
-    times.time("block_filter", [&] { filter_.renew(links_.changed()); });
-    gather_.find_sources();
-    count_rays(solution);
+    if (gather_.direct() == Direct::exact)
+      times.time("direct_light", [&] { lamps_.light(offsets(), scales(), moves); });
+    if (moves.any()) link(moves, solution);
   }
   const progress::Work work("bounces");
   const bool settled = times.time("bounces", [&] { return converge(before, enough, solution); });
   times.time("average", [&] { finish(); });
   return settled;
+}
+
+void Rays::link(const Moves& moves, Solution& solution) {
+  auto& times = device_.times();
+  times.time("links", [&] { links_.link(offsets(), moves); });
+  times.time("block_filter", [&] { filter_.renew(links_.changed()); });
+  gather_.find_sources();
+  count_rays(solution);
 }
 
 // As many bounces as are asked for; or until the bound is met, or falls no more, for rounding. True if that is
@@ -102,21 +125,27 @@ void Rays::count_rays(Solution& solution) const {
 }
 
 void Rays::finish() {
-  filter_.average(gather_.gathered(), averages_);
+  const auto& soft = lamps_.soft_irradiance();
+  std::vector<glm::vec4> own(rows_.count());  // which differs by the sets
+  for (std::uint32_t row = 0; row < rows_.count(); ++row)
+    own[row] = gather_.gathered()[row] + glm::vec4(soft[row], 0);
+  filter_.average(own, averages_);
   for_each_index(0, rows_.count(), rows_of_a_task, [&](std::uint32_t row) {
     const auto& record = rows_[row];
     if (record.atlas == no_atlas_texel) return;
     irradiance_[record.atlas] =
-        glm::vec4(glm::max(glm::vec3(averages_[row]), 0.0f) + lamps_.irradiance()[row], 1);
+        glm::vec4(glm::max(glm::vec3(averages_[row]), 0.0f) + (lamps_.irradiance()[row] - soft[row]), 1);
   });
 }
 
 double Rays::error_estimate() const {
-  std::vector<glm::vec4> averages(rows_.count()), half(irradiance_.size(), glm::vec4(0));
-  filter_.average(gather_.half_difference(), averages);
+  std::vector<glm::vec4> own(rows_.count()), averages(rows_.count()), half(irradiance_.size(), glm::vec4(0));
+  for (std::uint32_t row = 0; row < rows_.count(); ++row)
+    own[row] = gather_.half_difference()[row] + glm::vec4(lamps_.half_difference(row, true), 0);
+  filter_.average(own, averages);
   for (std::uint32_t row = 0; row < rows_.count(); ++row)
     if (rows_[row].atlas != no_atlas_texel)
-      half[rows_[row].atlas] = averages[row] + glm::vec4(lamps_.half_difference(row), 0);
+      half[rows_[row].atlas] = averages[row] + glm::vec4(lamps_.half_difference(row, false), 0);
   return split_half_error(irradiance_, half);
 }
 
@@ -125,6 +154,7 @@ Shown Rays::shown() {
   std::vector<float> covered(irradiance_.size(), 0);
   for (std::uint32_t row = 0; row < rows_.count(); ++row)
     if (rows_[row].atlas != no_atlas_texel && links_.buried(row)) covered[rows_[row].atlas] = 1;
+  presenter_->dim(scales());
   return presenter_->show(irradiance_view(), covered);
 }
 

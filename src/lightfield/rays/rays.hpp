@@ -30,6 +30,7 @@ class Rays final : public LightField {
   double error_estimate() const override;
 
   std::uint64_t bytes() const;
+  void link(const Moves& moves, Solution& solution);
   bool converge(Light before, const Enough& enough, Solution& solution);
   void bounce(Solution& solution);
   void count_rays(Solution& solution) const;
@@ -46,6 +47,7 @@ class Rays final : public LightField {
   const RaySets sets_;
   RayLinks links_;
   BlockFilter filter_;
+  const std::vector<std::uint32_t> sample_sets_;  // of rows
   LampLight lamps_;
   RayGather gather_;
   std::vector<glm::vec4> averages_;    // what rows have gathered, over their blocks [W m^-2]

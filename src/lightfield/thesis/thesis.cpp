@@ -9,6 +9,7 @@
 #include "core/convergence.hpp"
 #include "core/psf_view.hpp"
 #include "lichtveld/progress/progress.hpp"
+#include "lichtveld/scene/lights.hpp"
 
 namespace lichtveld::lightfield {
 
@@ -31,7 +32,7 @@ Thesis::Layered::Layered(const gpu::Device& device, const Settings& settings, st
       show(device, store) {}
 
 Thesis::Thesis(const gpu::Device& device, const scene::Scene& scene, const Settings& settings)
-    : LightField(scene.bodies.size()),
+    : LightField(scene, settings.direct.value_or(Direct::psf)),
       device_((check_on(device, settings), device)),
       begun_(device.times().so_far()),
       settings_(settings),
@@ -80,7 +81,8 @@ bool Thesis::compute(Light, const Moves& moves, const Enough&, Solution& solutio
 double Thesis::error_estimate() const {
   auto half = gpu::download<glm::vec4>(device_, map_.half_difference);
   for (std::uint32_t number = 0; lamps_ && number < records_.count(); ++number)
-    half[records_[number].atlas] += glm::vec4(lamps_->half_difference(number), 0);
+    half[records_[number].atlas] +=
+        glm::vec4(lamps_->half_difference(number, false) + lamps_->half_difference(number, true), 0);
   return split_half_error(irradiance(), half);
 }
 
@@ -113,12 +115,14 @@ void Thesis::begin(const Moves& moves) {
   geometry_texture_.find_walls(frame, geometry_, map_);
   brdf_.record(frame, map_, !lamps_);
   frame.submit_and_wait();
+  if (scales() != scene::full(geometry_.scene))
+    put_emission(device_, map_, geometry_.scene, records_, scales());
 }
 
 // The bounce of lamps, which no PSF brings: into sums_.lamp_irradiance.
 void Thesis::light_by_lamps(const Moves& moves) {
   const gpu::TimeLedger::Stage stage(device_.times(), "direct_light");
-  lamps_->light(offsets(), moves);
+  lamps_->light(offsets(), scales(), moves);
   std::vector<glm::vec4> texels(std::size_t{map_.size} * map_.size, glm::vec4(0));
   for (std::uint32_t number = 0; number < records_.count(); ++number)
     texels[records_[number].atlas] = glm::vec4(lamps_->irradiance()[number], 0);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "lichtveld/gpu/times.hpp"
+#include "lichtveld/lightfield/settings.hpp"
 #include "lichtveld/lightfield/shown.hpp"
 #include "lichtveld/lightfield/texel_view.hpp"
 #include "lichtveld/scene/scene.hpp"
@@ -33,12 +34,12 @@ struct Solution {
 // What is known of the light, where the bodies are.
 enum class Light {
   unknown,  // nothing: none has been computed, or computing it has failed half-way
-  moved,    // it belongs to where the bodies were
+  moved,    // it belongs to where the bodies were, or to what lights gave
   rising,   // it belongs to where they are, and more bounces would change it
   settled,  // nothing that more bounces would change, as far as they are asked for
 };
 
-// Which bodies have moved since light was last computed. Asked here, once, and handed to whoever follows.
+// What has changed since light was last computed. Asked here, once, and handed to whoever follows.
 struct Moves {
   struct Move {
     std::uint32_t body;
@@ -46,8 +47,10 @@ struct Moves {
   };
   bool all = true;  // nothing is known of before: every body counts as moved, and `bodies` is empty
   std::vector<Move> bodies = {};
+  bool dimmed = false;  // lights have another scale
 
   bool has(std::uint32_t body) const;
+  bool any() const { return all || !bodies.empty(); }  // has moved
 };
 
 // What is kept of before against what a fresh start finds.
@@ -62,6 +65,11 @@ class LightField {
   // still. Computes nothing.
   void place(const scene::Offsets& offsets);
 
+  // Light i of the scene gives scales[i] times what the file says; one entry each, 0 or more. No link and no
+  // shadow is looked for again. Computes nothing. Throws std::invalid_argument where light straight from lamps
+  // is found by the directions (Direct::psf), which know no lights.
+  void dim(const scene::Scales& scales);
+
   // The light of the next map of a room in which things move: as little as the engine's settings say after a
   // move, then more bounces until nothing is missing or enough(bounces so far) is true. Nothing is done, and
   // Solution::bounces is 0, where the light has settled. Should it throw, all is computed afresh the next time.
@@ -72,6 +80,7 @@ class LightField {
   const Solution& settle();
 
   const scene::Offsets& offsets() const { return offsets_; }
+  const scene::Scales& scales() const { return scales_; }
   Light light() const { return light_; }
   const Solution& solution() const { return solution_; }
 
@@ -101,7 +110,10 @@ class LightField {
   LightField& operator=(const LightField&) = delete;
 
  protected:
-  explicit LightField(std::size_t bodies) : offsets_(bodies, glm::vec3(0)) {}
+  LightField(const scene::Scene& scene, Direct direct)
+      : offsets_(scene.bodies.size(), glm::vec3(0)),
+        scales_(scene.lights.size(), glm::vec3(1)),
+        direct_(direct) {}
 
   // Computes light where offsets() are. `before`: what is known of it; `moves`: since then, none but after
   // Light::unknown (all) and Light::moved. True if it has settled.
@@ -115,7 +127,10 @@ class LightField {
   void advance(const Enough& enough);
 
   scene::Offsets offsets_;
+  scene::Scales scales_;
   scene::Offsets known_;  // where the bodies were when light was last computed
+  scene::Scales known_scales_;
+  const Direct direct_;
   Light light_ = Light::unknown;
   Solution solution_;
 };

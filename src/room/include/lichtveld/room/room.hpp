@@ -21,7 +21,8 @@ struct Map {
 };
 
 struct Options {
-  double rate = 30;  // most maps a second, above 0
+  double rate = 30;           // most maps a second, above 0
+  scene::Scales scales = {};  // of its lights at the beginning; empty: all as in the scene
   // Of the scene's movable bodies the first so many are listed in maps and placed; others stand at rest.
   std::size_t bodies = std::numeric_limits<std::size_t>::max();
   // Where maps go, one after the other, on a thread of the room's own, while the next one is computed: to be
@@ -46,13 +47,16 @@ class Room {
   // Publishes the map with all bodies at rest, of all its light. On the thread that uses the device, as run().
   void begin();
 
-  // Follows the newest places until stop(): a map as soon as somebody has moved, then a few more until the
-  // light has settled, then none. Throws what the light field or `publish` throws.
+  // Follows the newest places and lights until stop(): a map as soon as somebody has changed something, then a
+  // few more until the light has settled, then none; without a pause while a light flickers or follows a day.
+  // Throws what the light field or `publish` throws.
   void run();
 
   // Where the bodies are now; of what comes while a map is made the newest counts. Thread-safe, and never
   // waits.
   void place(Places places);
+  // What lights give times what the scene says, likewise. Their flicker and schedule come on top.
+  void dim(scene::Scales scales);
   // Ends run() after the map that is being made, and makes a begin() that is under way end early. Thread-safe.
   void stop();
 

@@ -1,4 +1,4 @@
-// What others tell the room's loop: the newest places, and that it is time to end.
+// What others tell the room's loop: the newest places and lights, and that it is time to end.
 #pragma once
 
 #include <chrono>
@@ -11,19 +11,21 @@
 
 namespace lichtveld::room {
 
-// Holds one value, the newest: a loop that was busy renders where things are now. Thread-safe.
-class PlaceInbox {
+// Holds the newest of each alone: a loop that was busy renders where things are now. Thread-safe.
+class Inbox {
  public:
   using Clock = std::chrono::steady_clock;
   struct News {
-    Places places;
-    Clock::time_point came;
+    std::optional<Places> places = {};
+    std::optional<scene::Scales> scales = {};
+    Clock::time_point came = Clock::now();  // the newest
   };
 
-  void put(Places places) {
-    const std::lock_guard lock(mutex_);
-    newest_ = News{std::move(places), Clock::now()};
-    changed_.notify_one();
+  void place(Places places) {
+    put([&](News& news) { news.places = std::move(places); });
+  }
+  void dim(scene::Scales scales) {
+    put([&](News& news) { news.scales = std::move(scales); });
   }
 
   void stop() {
@@ -43,7 +45,7 @@ class PlaceInbox {
     return newest_ || stopped_;
   }
 
-  // The newest places, once; empty when none came in time or when stopped.
+  // What is new, once; empty when none came in time or when stopped.
   std::optional<News> take(std::chrono::milliseconds patience) {
     std::unique_lock lock(mutex_);
     changed_.wait_for(lock, patience, [&] { return newest_ || stopped_; });
@@ -52,6 +54,15 @@ class PlaceInbox {
   }
 
  private:
+  template <typename Change>
+  void put(const Change& change) {
+    const std::lock_guard lock(mutex_);
+    if (!newest_) newest_.emplace();
+    change(*newest_);
+    newest_->came = Clock::now();
+    changed_.notify_one();
+  }
+
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   std::optional<News> newest_;
