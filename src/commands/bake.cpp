@@ -49,6 +49,7 @@ void check_outputs(const BakeOptions& options) {
                                    {"--capture", options.capture.file}})
     if (!file.empty()) files.push_back({name, file});
   files::check_distinct(files);
+  if (!options.lights_apart.empty()) files::make_folder(options.lights_apart);
   if (options.dump.empty()) return;
   for (const auto& [name, file] : files)
     if (is_of_a_pass(file, options.dump))
@@ -64,13 +65,16 @@ void bake(const BakeOptions& options) {
     throw UsageError("--dump-psf " + std::to_string(options.dump_psf) + ": the directions are numbered 0.." +
                      std::to_string(options.settings.psf - 1));
   const progress::Work work("bake");
-  BakeJob job{.scene = scene::load(options.scene), .moves = {}};
+  BakeJob job{.scene = load(options.scene, options.lights), .moves = {}, .scales = {}};
+  job.scales = scales_of(job.scene, options.lights);
   scene::check_atlas(job.scene, options.settings.size);
   for (const auto& text : options.moves) job.moves.push_back(parse_move(text, job.scene));
 
   const Baked baked =
       options.method.is_reference() ? bake_reference(options, job) : bake_light_field(options, job);
   files::write_exr(options.out, baked.irradiance, baked.size);
+  for (const auto& [light, irradiance] : baked.apart)
+    files::write_exr(std::filesystem::path(options.lights_apart) / light, irradiance, baked.size);
   if (baked.shown) files::write_bytes(options.png, stream::encode_png(baked.shown->bytes, baked.shown->size));
   if (!options.report.empty()) files::write_text(options.report, baked.report.dump(2) + "\n");
   spdlog::info("{}: {} texels, {} bounces, {:.0f} ms on {}", options.out, baked.report["texels_valid"].dump(),
@@ -101,8 +105,15 @@ void add_bake(CLI::App& application) {
       ->add_option("--move", options->moves, "Shift a movable node from its rest place, metres; repeats add up")
       ->type_name("NODE=dx,dy,dz")
       ->allow_extra_args(false);
+  add_light_options(*command, options->lights);
+  command
+      ->add_option("--lights-apart", options->lights_apart,
+                   "Write what each light that switches gives, and all others together, there, as NAME.exr: a "
+                   "program can scale and add them")
+      ->type_name("DIR");
   command->add_flag("--live", options->live,
-                    "First compute with all nodes at rest, then apply each move, as serve does");
+                    "First compute with all nodes at rest and all lights full, then apply each move and "
+                    "--light, as serve does");
   command->add_option("--dump", options->dump, "Write the output of every pass there, as EXR")
       ->type_name("DIR");
   command->add_option("--dump-psf", options->dump_psf, "The direction whose A-buffer and irradiance are dumped")

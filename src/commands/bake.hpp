@@ -8,12 +8,14 @@
 
 #include "lichtveld/lightfield/choice.hpp"
 #include "lichtveld/lightfield/shown.hpp"
+#include "light_options.hpp"
 #include "options.hpp"
 
 namespace lichtveld::commands {
 
 struct BakeOptions {
-  std::string scene, out, png, report, dump;
+  std::string scene, out, png, report, dump, lights_apart;
+  LightOptions lights;
   std::uint32_t dump_psf = 0;
   std::vector<std::string> moves;
   bool live = false;
@@ -34,6 +36,7 @@ struct BakeJob {
     glm::vec3 by;  // [m]
   };
   std::vector<NodeMove> moves;
+  scene::Scales scales;  // of its lights, by options.lights
 
   scene::Offsets at_rest() const { return scene::Offsets(scene.bodies.size(), glm::vec3(0)); }
   scene::Offsets moved() const;  // every move made
@@ -43,6 +46,11 @@ struct Baked {
   std::uint32_t size;  // texels a side
   std::vector<glm::vec4> irradiance;
   std::optional<lightfield::Shown> shown;  // if options.png asks for it
+  struct OfLight {
+    std::string light;
+    std::vector<glm::vec4> irradiance;
+  };
+  std::vector<OfLight> apart;  // if options.lights_apart asks for them; together they are `irradiance`
   nlohmann::ordered_json report;
 };
 

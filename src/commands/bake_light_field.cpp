@@ -1,10 +1,14 @@
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
+#include <cctype>
 #include <chrono>
+#include <set>
 
 #include "bake.hpp"
 #include "lichtveld/files/output.hpp"
 #include "lichtveld/lightfield/engine.hpp"
+#include "lichtveld/scene/lights.hpp"
 #include "report.hpp"
 
 namespace lichtveld::commands {
@@ -33,6 +37,37 @@ void live(lightfield::LightField& light, const BakeJob& job, std::optional<gpu::
     light.place(offsets);
     update(capture, [&] { light.settle(); });
   }
+  light.dim(job.scales);
+}
+
+// NAME.exr, another for each.
+std::string file_of(const std::string& light, std::set<std::string>& taken) {
+  std::string name = light.empty() ? "light" : light.substr(0, 100);
+  std::ranges::replace_if(
+      name, [](unsigned char c) { return !std::isalnum(c) && c != '-' && c != '_'; }, '_');
+  std::string file = name + ".exr";
+  for (int number = 2; !taken.insert(file).second; ++number)
+    file = name + "-" + std::to_string(number) + ".exr";
+  return file;
+}
+
+// Each light's part, after as many bounces as all together took: then they add up.
+std::vector<Baked::OfLight> bake_apart(const lightfield::Engine& engine, const gpu::Device& device,
+                                       const BakeJob& job, lightfield::Settings settings,
+                                       std::uint32_t bounces) {
+  settings.bounces = bounces;
+  const auto light = engine.make(device, job.scene, settings);
+  light->place(job.moved());
+  std::vector<Baked::OfLight> apart;
+  std::set<std::string> taken;
+  for (std::size_t i = 0; i < job.scene.lights.size(); ++i) {
+    scene::Scales scales(job.scene.lights.size(), glm::vec3(0));
+    scales[i] = job.scales[i];
+    light->dim(scales);
+    light->settle();
+    apart.push_back({file_of(i == 0 ? "rest" : job.scene.lights[i].node, taken), light->irradiance()});
+  }
+  return apart;
 }
 
 // Of --live: at rest, and after every move. The last is what a capture is for, if nothing else is said.
@@ -73,9 +108,11 @@ Baked bake_light_field(const BakeOptions& options, const BakeJob& job) {
   const auto start = std::chrono::steady_clock::now();
   auto total = std::make_unique<gpu::TimeLedger::Stage>(device.times(), "rest");
   auto settings = options.settings;
-  const auto& engine = engine_of(options.method, device, job.scene, settings);
-  if (options.error) choose_quality(options, engine, device, job.scene, settings);
-  const auto light = device.times().time("set_up", [&] { return engine.make(device, job.scene, settings); });
+  // Without --live lights are from the start as they are asked for, for methods that know none, too.
+  const auto scene = options.live ? job.scene : scene::dimmed(job.scene, job.scales);
+  const auto& engine = engine_of(options.method, device, scene, settings);
+  if (options.error) choose_quality(options, engine, device, scene, settings);
+  const auto light = device.times().time("set_up", [&] { return engine.make(device, scene, settings); });
   if (options.live) live(*light, job, capture);
   if (!options.dump.empty()) light->observe(dump_into(options.dump), options.dump_psf);
   light->place(job.moved());
@@ -83,7 +120,7 @@ Baked bake_light_field(const BakeOptions& options, const BakeJob& job) {
   const auto settle = [&] { solution = light->settle(); };
   // What --live has computed is only looked at once more.
   options.live ? settle() : update(capture, settle);
-  Baked baked{.size = settings.size, .irradiance = light->irradiance(), .shown = {}, .report = {}};
+  Baked baked{.size = settings.size, .irradiance = light->irradiance(), .shown = {}, .apart = {}, .report = {}};
   const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
   total.reset();
 
@@ -92,6 +129,7 @@ Baked bake_light_field(const BakeOptions& options, const BakeJob& job) {
   const auto links = options.live ? look_again(*light, settings, solution) : nlohmann::ordered_json();
   baked.report = report(device, engine.name, settings, solution, times, took.count());
   if (!links.empty()) baked.report["links"] = links;
+  if (!options.lights_apart.empty()) baked.apart = bake_apart(engine, device, job, settings, solution.bounces);
   check_validation(device);
   return baked;
 }

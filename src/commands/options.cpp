@@ -54,6 +54,7 @@ const std::vector<OptionOfMethods> options_of_methods = {
     {"--error", {"thesis", "links", "rays"}},
     {"--memory", {"links", "rays"}},
     {"--live", {"thesis", "links", "rays"}},
+    {"--lights-apart", {"thesis", "links", "rays"}},
     {"--spp", {reference_method}},
 };
 
