@@ -12,7 +12,9 @@
 #include "lichtveld/room/room.hpp"
 #include "lichtveld/scene/atlas.hpp"
 #include "lichtveld/stream/encoder.hpp"
+#include "lichtveld/stream/protocol.hpp"
 #include "lichtveld/stream/server.hpp"
+#include "light_options.hpp"
 #include "options.hpp"
 #include "stop_signals.hpp"
 
@@ -33,6 +35,7 @@ constexpr std::size_t cubes_of_players = 2;  // as stream's protocol has it
 
 struct ServeOptions {
   std::string scene, token_file;
+  LightOptions lights;
   stream::ServerOptions stream;  // what the command line says of it
   std::string udp_port;          // PORT or FIRST-LAST; empty: any
   double rate = 30;
@@ -114,6 +117,18 @@ stream::Work as_sent(const room::Work& work) {
   return sent;
 }
 
+// Those that players switch, of the scene's.
+std::vector<std::size_t> switchable_lights(const scene::Scene& scene) {
+  std::vector<std::size_t> found;
+  for (std::size_t i = 0; i < scene.lights.size(); ++i)
+    if (scene.lights[i].switchable) found.push_back(i);
+  if (found.size() <= stream::most_lights) return found;
+  spdlog::warn("{}: of {} lights that switch the first {} are the players'", scene.file, found.size(),
+               stream::most_lights);
+  found.resize(stream::most_lights);
+  return found;
+}
+
 // At the end, or when something throws: no map goes to a server that is no more, no player's key to a room that
 // is none.
 struct Closing {
@@ -160,7 +175,8 @@ void serve(ServeOptions options) {
   stream::check_addresses(options.stream);
   std::stop_source stop;
   const StopSignals signals([&] { stop.request_stop(); });
-  const auto scene = scene::load(options.scene);
+  const auto scene = load(options.scene, options.lights);
+  auto scales = scales_of(scene, options.lights);
   options.stream.token = read_token(options.token_file);
   options.stream.scene_hash = files::sha256_of_file(options.scene);
   auto capture = make_capture(options.capture, 0);
@@ -173,6 +189,7 @@ void serve(ServeOptions options) {
   std::unique_ptr<stream::Server> server;
   room::Room room(scene, engine.make(device, scene, options.settings),
                   {.rate = options.rate,
+                   .scales = scales,
                    .bodies = cubes_of_players,
                    .publish = [&](const room::Map& map) { server->publish(encoded(map)); },
                    .ended = [&] { return !server->refused().empty(); },
@@ -185,6 +202,16 @@ void serve(ServeOptions options) {
   };
   options.stream.places_changed = [&](const std::vector<stream::Place>& places) {
     room.place(with_depth(places, rest));
+  };
+  const auto switchable = switchable_lights(scene);
+  for (const auto light : switchable) {
+    const glm::vec3 scale = glm::min(scales[light], stream::brightest_light);
+    options.stream.lights.push_back({scene.lights[light].node, {scale.r, scale.g, scale.b}});
+  }
+  options.stream.lights_changed = [&](const std::vector<stream::Light>& lights) {
+    for (std::size_t i = 0; i < lights.size(); ++i)
+      scales[switchable[i]] = {lights[i].scale[0], lights[i].scale[1], lights[i].scale[2]};
+    room.dim(scales);
   };
   options.stream.work = [&] { return as_sent(room.work()); };
   server = std::make_unique<stream::Server>(std::move(options.stream));
@@ -227,6 +254,7 @@ void add_serve(CLI::App& application) {
       "--public-ip", options->stream.public_address,
       "The address at which this machine is reached from outside, where a 1:1 NAT stands before it");
   command->add_option("--rate", options->rate, "Most light maps a second")->capture_default_str();
+  add_light_options(*command, options->lights);
   add_quality_options(*command, options->settings);
   command->get_option("--size")->default_str(
       "the finest that this machine renews at --rate, or 15 times a second");

@@ -29,6 +29,9 @@ inline constexpr std::size_t refusals = 32;
 // A player's moves: a token bucket, so that a key repeat or one move a frame at 60 Hz passes whole.
 inline constexpr double moves_per_second = 60, moves_burst = 30;
 
+// A player's changes of lights: a slider's, as fast as a screen. All who follow lights are told of each.
+inline constexpr double dimmings_per_second = 60, dimmings_burst = 30;
+
 // Messages of one peer that wait for the room's thread; more are dropped and counted. The rest of its events
 // (opened, drained, closed) cannot pile up.
 inline constexpr std::size_t queued_messages = 64;

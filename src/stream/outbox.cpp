@@ -22,6 +22,8 @@ void Outbox::pump() {
     last_empty_ = Clock::now();
     if (!due_.empty()) {
       send_text(std::exchange(due_, {}));
+    } else if (!due_lights_.empty()) {
+      send_text(std::exchange(due_lights_, {}));
     } else if (current_) {
       send_map_part();
     } else if (newest_) {

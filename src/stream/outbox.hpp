@@ -25,7 +25,7 @@ struct SentCounts {
   std::chrono::duration<double> sending{};  // of the maps, each from offer() on
 };
 
-// Sends only while the channel's queue is empty, so that at most one chunk and one places message wait there: a
+// Sends only while the channel's queue is empty, so that at most one chunk or text waits there: a
 // map in transit is finished, and the one after it is the newest of that moment. (SCTP's own send buffer, 64
 // KiB, lies beyond that queue and cannot be seen from here.)
 class Outbox {
@@ -40,6 +40,9 @@ class Outbox {
   // Says again which places the peer's map shows (`otherwise` before its first map), at the next chance; calls
   // before that chance come to one message, so nothing piles up for a peer that takes nothing.
   void repeat_places(const std::string& otherwise);
+
+  // At the next chance; of several that wait the last counts.
+  void tell_lights(std::string lights) { due_lights_ = std::move(lights); }
 
   // Sends what the channel takes now; to be called again when it has drained. Throws what the channel throws
   // when it has closed.
@@ -60,6 +63,7 @@ class Outbox {
   Clock::time_point newest_came_, current_came_;
   std::size_t offset_ = 0;   // bytes of current_ that are sent
   std::string due_, shown_;  // places
+  std::string due_lights_;
   bool shows_map_ = false;
   Clock::time_point last_empty_ = Clock::now();
   SentCounts counts_;

@@ -223,6 +223,11 @@ void Peer::send_map(std::shared_ptr<const Map> map) {
   pump();
 }
 
+void Peer::send_lights(const std::string& lights) {
+  outbox_->tell_lights(lights);
+  pump();
+}
+
 void Peer::send_places(const std::string& before_first_map) {
   outbox_->repeat_places(before_first_map);
   pump();

@@ -64,6 +64,7 @@ class Peer {
   // Only while open. What cannot be sent because the channel has just closed is followed by on_closed.
   void send_map(std::shared_ptr<const Map> map);
   void send_places(const std::string& before_first_map);
+  void send_lights(const std::string& lights);
   const Outbox& outbox() const { return *outbox_; }
 
   SentCounts take_counts() { return outbox_ ? outbox_->take_counts() : SentCounts{}; }

@@ -4,6 +4,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <stdexcept>
 
 namespace lichtveld::stream {
@@ -51,6 +52,41 @@ std::optional<Move> parse_move(std::string_view text) {
   if (text == "left") return Move::left;
   if (text == "right") return Move::right;
   return std::nullopt;
+}
+
+std::string format_lights(const std::vector<Light>& lights) {
+  auto list = nlohmann::ordered_json::array();
+  for (const auto& light : lights) {
+    for (const float scale : light.scale)
+      if (!(scale >= 0 && scale <= brightest_light))
+        throw std::invalid_argument("a light's scale is outside 0.." + std::to_string(brightest_light));
+    list.push_back({{"name", light.name.substr(0, light_name)}, {"scale", light.scale}});
+  }
+  return nlohmann::ordered_json{{"lights", list}}.dump(-1, ' ', false, nlohmann::json::error_handler_t::ignore);
+}
+
+bool asks_for_lights(std::string_view text) {
+  return text == "lights";
+}
+
+std::optional<Dimming> parse_dimming(std::string_view text) {
+  constexpr std::string_view start = "light ";
+  if (!text.starts_with(start)) return std::nullopt;
+  const char *at = text.data() + start.size(), *const end = text.data() + text.size();
+  std::size_t number = 0;
+  auto read = std::from_chars(at, end, number);
+  if (read.ec != std::errc() || number == 0) return std::nullopt;
+  Dimming dimming{.light = number - 1};
+  std::size_t count = 0;
+  while (read.ptr != end) {
+    if (*read.ptr != ' ' || count == dimming.scale.size()) return std::nullopt;
+    float& scale = dimming.scale[count++];
+    read = std::from_chars(read.ptr + 1, end, scale, std::chars_format::fixed);
+    if (read.ec != std::errc() || !(scale >= 0 && scale <= brightest_light)) return std::nullopt;
+  }
+  if (count != 1 && count != dimming.scale.size()) return std::nullopt;
+  if (count == 1) dimming.scale.fill(dimming.scale[0]);
+  return dimming;
 }
 
 }  // namespace lichtveld::stream

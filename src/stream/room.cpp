@@ -25,6 +25,8 @@ Server::Room::Room(ServerOptions options)
                  const std::lock_guard lock(mutex_);
                  refused_ = std::move(why);
                }}) {
+  if (options_.lights.size() > most_lights)
+    throw std::invalid_argument("a room tells of at most " + std::to_string(most_lights) + " lights");
   ice_.bind_address = options_.bind_address;
   ice_.ports = options_.udp_ports;
   tick();
@@ -108,6 +110,7 @@ void Server::Room::report() {
                                     {"maps_skipped", now.maps_skipped},
                                     {"moves", now.moves},
                                     {"moves_blocked", now.moves_blocked},
+                                    {"dimmings", now.dimmings},
                                     {"messages_refused", now.messages_refused},
                                     {"claims_refused", now.claims_refused}})
     work.counts.push_back({name, value});
@@ -154,12 +157,39 @@ void Server::Room::count_failure(const Guest& guest) {
 void Server::Room::on_text(Peer& peer, std::string_view text) {
   const auto guest = guests_.find(peer.number());
   if (guest == guests_.end()) return;
-  const auto move = parse_move(text);
-  if (!move) return on_refused(peer, "a text that is no move");
-  if (!guest->second.moves.take()) return count([](auto& s) { ++s.messages_refused; });
-  const MoveResult result = session_.move(peer.number(), *move);
+  if (const auto move = parse_move(text)) return moved(guest->second, *move);
+  const auto dimming = parse_dimming(text);
+  if (dimming && dimming->light < options_.lights.size()) return dimmed(guest->second, *dimming);
+  if (!asks_for_lights(text)) return on_refused(peer, "a text that is no move and no light");
+  if (!guest->second.dimmings.take()) return count([](auto& s) { ++s.messages_refused; });
+  guest->second.follows_lights = true;
+  tell_lights(guest->second);
+}
+
+void Server::Room::moved(Guest& guest, Move move) {
+  if (!guest.moves.take()) return count([](auto& s) { ++s.messages_refused; });
+  const MoveResult result = session_.move(guest.peer->number(), move);
   count([&](auto& s) { ++(result == MoveResult::moved ? s.moves : s.moves_blocked); });
   if (result == MoveResult::moved && options_.places_changed) options_.places_changed(session_.places());
+}
+
+// Only who plays may: watchers see what players do.
+void Server::Room::dimmed(Guest& guest, const Dimming& dimming) {
+  if (!guest.dimmings.take() || session_.role(guest.peer->number()).cube == 0)
+    return count([](auto& s) { ++s.messages_refused; });
+  auto& scale = options_.lights[dimming.light].scale;
+  if (scale == dimming.scale) return;
+  scale = dimming.scale;
+  count([](auto& s) { ++s.dimmings; });
+  if (options_.lights_changed) options_.lights_changed(options_.lights);
+  for (auto& [number, other] : guests_)
+    if (other.follows_lights) tell_lights(other);
+}
+
+void Server::Room::tell_lights(Guest& guest) {
+  if (!guest.peer->is_open()) return;
+  guest.peer->send_lights(format_lights(options_.lights));
+  collect(*guest.peer);
 }
 
 void Server::Room::on_refused(Peer& peer, std::string_view why) {

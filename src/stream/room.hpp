@@ -44,7 +44,9 @@ struct Server::Room final : PeerListener {
     Entry entry;
     std::string name;  // empty: none was told
     std::size_t candidates_in = 0, candidates_out = 0, refusals = 0;
-    TokenBucket moves{limits::moves_per_second, limits::moves_burst};
+    TokenBucket moves{limits::moves_per_second, limits::moves_burst},
+        dimmings{limits::dimmings_per_second, limits::dimmings_burst};
+    bool follows_lights = false;
   };
   using Guests = std::map<PeerNumber, Guest>;
 
@@ -61,6 +63,10 @@ struct Server::Room final : PeerListener {
   void candidate_came(const Signal& signal);
   void rejoined(const Signal& signal);
   void client_gone(const Signal& signal);
+
+  void moved(Guest& guest, Move move);
+  void dimmed(Guest& guest, const Dimming& dimming);
+  void tell_lights(Guest& guest);
 
   void run();
   void tick();

@@ -30,6 +30,10 @@ const clickSlop = 4;
 
 export interface ControlEvents {
   onStep(direction: Direction): void;
+  /** Key L: the nearest light. */
+  onSwitch(): void;
+  /** A click or a tap there [CSS pixels]; true if it meant something. */
+  onTap(x: number, y: number): boolean;
   /** Something was used: the hint has done its work. */
   onUse(): void;
 }
@@ -77,6 +81,9 @@ export class Controls {
     if (direction) {
       event.preventDefault();
       if (!event.repeat) this.#startSteps(direction);
+    } else if (event.code === 'KeyL') {
+      if (!event.repeat) this.events.onSwitch();
+      this.events.onUse();
     } else if (
       event.code in flightKeys &&
       !(event.code === 'Space' && event.target instanceof HTMLButtonElement)
@@ -159,12 +166,16 @@ export class Controls {
     this.#flight.move((-dx / 2) * scale, (dy / 2) * scale, spread * scale);
   }
 
-  /** A click of the mouse takes the pointer for looking around, until Esc or the next click. */
+  /** A click on nothing in particular takes the mouse for looking around, until Esc or the next click. */
   #pointerUp(event: PointerEvent): void {
+    const alone = this.#pointers.size === 1;
     this.#pointers.delete(event.pointerId);
+    const tapped = alone && this.#travel <= clickSlop && !document.pointerLockElement;
+    if (tapped && this.events.onTap(event.clientX, event.clientY)) return;
     if (event.pointerType !== 'mouse' || event.button !== 0) return;
     if (document.pointerLockElement) document.exitPointerLock();
-    else if (this.#travel <= clickSlop) void Promise.resolve(this.canvas.requestPointerLock()).catch(() => {});
+    else if (this.#travel <= clickSlop)
+      void Promise.resolve(this.canvas.requestPointerLock()).catch(() => {});
   }
 
   #wheel(event: WheelEvent): void {

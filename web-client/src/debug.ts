@@ -10,6 +10,7 @@ import type { MapStatistics } from './statistics';
  *   role          {cube, players, watchers}, undefined before the server has told
  *   name          what the link calls one, undefined without
  *   places        [{x, y}, ...] of the cubes, in metres, as received last
+ *   lights       [{name, scale}, ...] of the lights that switch, as received last
  *   map()         the newest map as ImageData, row 0 where v is 0; undefined before the first
  *   project(x, y, z)  CSS pixels {x, y} of a point of the scene, undefined behind the camera
  */
@@ -29,6 +30,9 @@ export function exposeForDebugging(known: Readonly<Knowledge>, statistics: MapSt
     },
     get places() {
       return known.places;
+    },
+    get lights() {
+      return known.lights;
     },
     get mapsReceived() {
       return statistics.received;

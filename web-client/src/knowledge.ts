@@ -1,4 +1,4 @@
-import type { Place } from './protocol';
+import type { Light, Place } from './protocol';
 import type { State } from './session';
 import type { Role } from './signaling';
 
@@ -11,6 +11,7 @@ export interface Knowledge {
   /** What one is called, where the link says so. */
   name: string | undefined;
   places: readonly Place[];
+  lights: readonly Light[];
 }
 
 export const nothingKnown = (): Knowledge => ({
@@ -19,4 +20,5 @@ export const nothingKnown = (): Knowledge => ({
   role: undefined,
   name: undefined,
   places: [],
+  lights: [],
 });

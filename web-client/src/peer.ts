@@ -1,4 +1,4 @@
-import { channelLabel, type Direction } from './protocol';
+import { channelLabel } from './protocol';
 import { Routes } from './routes';
 import type { Incoming, Outgoing } from './signaling';
 
@@ -90,8 +90,8 @@ export class Peer {
     }
   }
 
-  send(direction: Direction): void {
-    if (this.#channel.readyState === 'open') this.#channel.send(direction);
+  send(text: string): void {
+    if (this.#channel.readyState === 'open') this.#channel.send(text);
   }
 
   close(): void {

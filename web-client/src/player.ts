@@ -2,7 +2,9 @@ import { Controls } from './controls';
 import { Frames } from './frames';
 import type { Knowledge } from './knowledge';
 import { MapDecoder } from './map_decoder';
-import { Receiver } from './protocol';
+import { LightPanel } from './light_panel';
+import { Lights } from './lights';
+import { Receiver, followLights, type Light } from './protocol';
 import type { Room } from './room';
 import { fetchScene, type SceneFile } from './scene_file';
 import { Session, type SessionEvents, type State } from './session';
@@ -16,6 +18,8 @@ export class Player {
   readonly #scene: Promise<SceneFile>;
   readonly #session: Session;
   #receiver = new Receiver();
+  readonly #lights: Lights;
+  readonly #lightPanel: LightPanel;
   /** The next role is the first one after a connection was made. */
   #joinedAnew = false;
   readonly #maps = new MapDecoder({
@@ -32,6 +36,8 @@ export class Player {
     private readonly statistics: MapStatistics,
     private readonly known: Knowledge,
   ) {
+    this.#lights = new Lights(room, (text) => this.#session.send(text));
+    this.#lightPanel = new LightPanel(this.#lights);
     this.#scene = this.#fetchScene();
     this.#session = new Session(this.#sessionEvents());
     this.#listenToThePage();
@@ -74,6 +80,7 @@ export class Player {
       this.#receiver = new Receiver();
       this.statistics.restart();
       this.room.settle();
+      this.#session.send(followLights);
     }
     this.known.state = state;
     if (detail.reason) this.known.error = detail.reason;
@@ -94,7 +101,21 @@ export class Player {
     const received = this.#receiver.take(data);
     if (received?.kind === 'map') void this.#maps.take(received);
     else if (received?.kind === 'refused') this.#refuse(received.reason);
+    else if (received?.kind === 'lights') this.#takeLights(received.lights);
     else if (received?.kind === 'places') this.room.setPlaces((this.known.places = received.places));
+  }
+
+  #takeLights(lights: readonly Light[]): void {
+    this.known.lights = lights;
+    this.#lights.take(lights);
+    this.#lightPanel.show(lights);
+  }
+
+  /** True if there is one to switch. */
+  #switch(light: number | undefined): boolean {
+    if (light === undefined || !this.known.role?.cube) return false;
+    this.#lights.toggle(light);
+    return true;
   }
 
   #refuse(reason: string): void {
@@ -116,7 +137,12 @@ export class Player {
     const controls = new Controls(
       this.view.canvas,
       this.room,
-      { onStep: (direction) => this.#session.send(direction), onUse: () => this.view.hintUsed() },
+      {
+        onStep: (direction) => this.#session.send(direction),
+        onSwitch: () => this.#switch(this.#lights.nearest(this.room.ownPlace())),
+        onTap: (x, y) => this.#switch(this.#lights.at(x, y)),
+        onUse: () => this.view.hintUsed(),
+      },
       this.view.arrowButtons,
     );
     const frames = new Frames((ms) => {

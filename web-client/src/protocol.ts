@@ -5,7 +5,9 @@ import { formatNames, recognise, type EncodedMap } from './map_format';
  *
  *   server -> client  binary chunks of one PNG, then the text PNG_TRANSFER_COMPLETE
  *                     text `x1!y1/x2!y2`: where the movable nodes' origins are, in metres, x and y of the scene
+ *                     text {"lights":[{"name":"lamp","scale":[1,1,1]}]}, to those who have asked for it
  *   client -> server  text up | down | left | right: one step of one's own cube
+ *                     text lights: asks to be told of lights; light N R G B: what the Nth gives, times the scene's
  */
 export const channelLabel = 'lichtveld';
 export const mapComplete = 'PNG_TRANSFER_COMPLETE';
@@ -21,9 +23,19 @@ export interface Place {
   readonly y: number;
 }
 
+/** Times what the scene says a light gives: red, green, blue. */
+export type LightScale = readonly [number, number, number];
+
+/** One that players switch. */
+export interface Light {
+  readonly name: string;
+  readonly scale: LightScale;
+}
+
 export type Received =
   | ({ readonly kind: 'map' } & EncodedMap)
   | { readonly kind: 'places'; readonly places: readonly Place[] }
+  | { readonly kind: 'lights'; readonly lights: readonly Light[] }
   | { readonly kind: 'refused'; readonly reason: string };
 
 const number = String.raw`[-+]?\d{1,9}(?:\.\d{1,50})?`;
@@ -39,6 +51,37 @@ export function parsePlaces(text: string): Place[] | undefined {
   });
 }
 
+/** What asks to be told of lights, now and whenever one changes. */
+export const followLights = 'lights';
+
+/** As bright as a light may be made. */
+const brightestLight = 16;
+const maxLights = 64;
+const maxLightsLength = 32 * 1024;
+
+const isLight = (value: unknown): value is Light => {
+  const { name, scale } = (value ?? {}) as Partial<Record<keyof Light, unknown>>;
+  const good = (channel: unknown) => typeof channel === 'number' && channel >= 0 && channel <= brightestLight;
+  return typeof name === 'string' && Array.isArray(scale) && scale.length === 3 && scale.every(good);
+};
+
+/** Reads `{"lights":[...]}`; undefined for anything else. */
+export function parseLights(text: string): Light[] | undefined {
+  if (text.length > maxLightsLength || !text.startsWith('{')) return undefined;
+  try {
+    const { lights } = JSON.parse(text) as { lights?: unknown };
+    return Array.isArray(lights) && lights.length <= maxLights && lights.every(isLight) ? lights : undefined;
+  } catch {
+    return undefined;
+  }
+}
+
+/** `index` from 0 on. */
+export function formatDimming(index: number, scale: LightScale): string {
+  const channels = scale.map((channel) => Math.min(Math.max(channel, 0), brightestLight).toFixed(4));
+  return `light ${index + 1} ${channels.join(' ')}`;
+}
+
 /** Puts a map together from its chunks, and never holds more than `maxMapBytes`. */
 export class Receiver {
   #chunks: ArrayBuffer[] = [];
@@ -49,6 +92,8 @@ export class Receiver {
   take(data: string | ArrayBuffer): Received | undefined {
     if (typeof data !== 'string') return this.#takeChunk(data);
     if (data === mapComplete) return this.#finishMap();
+    const lights = parseLights(data);
+    if (lights) return { kind: 'lights', lights };
     const places = parsePlaces(data);
     return places ? { kind: 'places', places } : { kind: 'refused', reason: 'unknown text' };
   }

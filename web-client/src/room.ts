@@ -4,9 +4,12 @@ import {
   ColorManagement,
   DoubleSide,
   LinearSRGBColorSpace,
+  Mesh,
   MeshBasicMaterial,
   PerspectiveCamera,
+  Raycaster,
   Scene,
+  Vector2,
   Vector3,
   WebGLRenderer,
   type Object3D,
@@ -56,6 +59,7 @@ export class Room {
   #renderer: WebGLRenderer;
   #scene = new Scene();
   #movable: readonly Object3D[] = [];
+  #file: SceneFile | undefined;
   #targets: (Place | undefined)[] = [];
   #own = 0;
   #outline: ReturnType<typeof outline> | undefined;
@@ -79,6 +83,7 @@ export class Room {
   show(file: SceneFile): void {
     this.#scene.add(file.root);
     this.#movable = file.movable;
+    this.#file = file;
     const box = new Box3().setFromObject(file.root);
     this.height = box.getSize(new Vector3()).y;
     this.#frame(box);
@@ -142,6 +147,28 @@ export class Room {
     return this.project(centre.x, box.max.y, centre.z);
   }
 
+  node(name: string): Object3D | undefined {
+    return this.#file?.node(name);
+  }
+
+  /** Where one's own cube is, or the eye of somebody who has none. */
+  ownPlace(): Vector3 {
+    const node = this.#movable[this.#own - 1];
+    return node ? new Box3().setFromObject(node).getCenter(new Vector3()) : this.camera.position.clone();
+  }
+
+  /** How far away an object is under a point of the page [CSS pixels]; undefined where it is not the first there. */
+  hits(object: Object3D, x: number, y: number): number | undefined {
+    const { clientWidth, clientHeight } = this.#renderer.domElement;
+    const ray = new Raycaster();
+    ray.setFromCamera(new Vector2((2 * x) / clientWidth - 1, 1 - (2 * y) / clientHeight), this.camera);
+    const first =
+      this.#file && ray.intersectObject(this.#file.root, true).find((hit) => hit.object instanceof Mesh);
+    for (let node = first?.object; node; node = node.parent ?? undefined)
+      if (node === object) return first?.distance;
+    return undefined;
+  }
+
   /** From the scene's metres to CSS pixels of the page; undefined behind the camera. */
   project(x: number, y: number, z: number): { x: number; y: number } | undefined {
     this.camera.updateMatrixWorld();
@@ -187,7 +214,11 @@ export class Room {
       const world = node.getWorldPosition(new Vector3());
       const [dx, dy] = [target.x - world.x, target.y - world.y];
       const arrived = Math.hypot(dx, dy) < this.height * 1e-4;
-      world.set(arrived ? target.x : world.x + share * dx, arrived ? target.y : world.y + share * dy, world.z);
+      world.set(
+        arrived ? target.x : world.x + share * dx,
+        arrived ? target.y : world.y + share * dy,
+        world.z,
+      );
       node.position.copy(node.parent.worldToLocal(world));
       moving ||= !arrived;
     });

@@ -1,6 +1,6 @@
 import { sha256 } from '@noble/hashes/sha2';
 import { bytesToHex } from '@noble/hashes/utils';
-import { DoubleSide, Mesh, type Material, type Object3D } from 'three';
+import { DoubleSide, Mesh, Object3D, type Material } from 'three';
 import { GLTFLoader, type GLTF } from 'three/addons/loaders/GLTFLoader.js';
 import { Backoff } from './backoff';
 
@@ -8,6 +8,8 @@ export interface SceneFile {
   readonly root: Object3D;
   /** The outermost nodes with extras.movable, in the file's order. */
   readonly movable: readonly Object3D[];
+  /** The first node of that name in the file. */
+  node(name: string): Object3D | undefined;
   /** Of the file's bytes, 64 hex digits. crypto.subtle is missing on plain http, hence the library. */
   readonly sha256: string;
 }
@@ -45,6 +47,7 @@ async function loadScene({ url, token }: SceneSource, surfaces: Surfaces): Promi
     return {
       root: gltf.scene,
       movable: movableNodes(gltf),
+      node: (name) => namedNode(gltf, name),
       sha256: bytesToHex(sha256(new Uint8Array(bytes))),
     };
   } catch (error) {
@@ -84,6 +87,15 @@ function prepare(root: Object3D, surfaces: Surfaces): void {
     object.material = side === DoubleSide ? surfaces.twoSided : surfaces.oneSided;
     if (!object.geometry.hasAttribute('uv1')) throw new Error(`the mesh ${object.name} has no TEXCOORD_1`);
   });
+}
+
+/** By the file's own names: three.js changes some. */
+function namedNode(gltf: GLTF, name: string): Object3D | undefined {
+  const nodes = (gltf.parser.json as { nodes?: { name?: unknown }[] }).nodes ?? [];
+  const index = nodes.findIndex((node) => node.name === name);
+  for (const [object, { nodes: of }] of gltf.parser.associations)
+    if (index >= 0 && of === index && object instanceof Object3D) return object;
+  return undefined;
 }
 
 /** Like the server, only the outermost of each branch: what is inside moves along. */

@@ -1,6 +1,5 @@
 import { Backoff } from './backoff';
 import { Peer } from './peer';
-import type { Direction } from './protocol';
 import {
   Signaling,
   notAdmitted,
@@ -88,8 +87,9 @@ export class Session {
     this.#connect();
   }
 
-  send(direction: Direction): void {
-    this.#peer?.send(direction);
+  /** A message of the data channel; nothing where none is open. */
+  send(text: string): void {
+    this.#peer?.send(text);
   }
 
   /** The page goes, perhaps for good: says so to both ends instead of letting them find out by silence. */

@@ -1,8 +1,9 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { Receiver, mapComplete, maxMapBytes, parsePlaces } from '../src/protocol';
+import { Receiver, formatDimming, mapComplete, maxMapBytes, parseLights, parsePlaces } from '../src/protocol';
 
-const bytes = (hex: string): ArrayBuffer => new Uint8Array(Buffer.from(hex.replaceAll(' ', ''), 'hex')).buffer;
+const bytes = (hex: string): ArrayBuffer =>
+  new Uint8Array(Buffer.from(hex.replaceAll(' ', ''), 'hex')).buffer;
 /** The first bytes of a PNG of 256 x 256 texels, cut inside its signature as a chunk may be. */
 const chunks = [
   bytes('89 50 4e'),
@@ -83,4 +84,28 @@ test('a map without end is refused once, forgotten, and the next one comes throu
   assert.equal(receiver.take(mapComplete), undefined);
   for (const good of chunks) receiver.take(good);
   assert.equal(receiver.take(mapComplete)?.kind, 'map');
+});
+
+test('lights are read as the server writes them, and nothing else is', () => {
+  const text = '{"lights":[{"name":"lamp","scale":[1,0.5,0]}]}';
+  assert.deepEqual(parseLights(text), [{ name: 'lamp', scale: [1, 0.5, 0] }]);
+  assert.deepEqual(new Receiver().take(text), { kind: 'lights', lights: parseLights(text) });
+  for (const wrong of [
+    '',
+    '{',
+    '{}',
+    '{"lights":1}',
+    '{"lights":[null]}',
+    '{"lights":[{"name":"lamp","scale":[1,1]}]}',
+    '{"lights":[{"name":"lamp","scale":[1,1,-1]}]}',
+    '{"lights":[{"name":"lamp","scale":[1,1,17]}]}',
+    '{"lights":[{"name":1,"scale":[1,1,1]}]}',
+    `{"lights":[${Array(65).fill('{"name":"l","scale":[1,1,1]}').join()}]}`,
+  ])
+    assert.equal(parseLights(wrong), undefined, wrong);
+});
+
+test('what is asked of a light is within its limits', () => {
+  assert.equal(formatDimming(0, [1, 0.5, 1 / 3]), 'light 1 1.0000 0.5000 0.3333');
+  assert.equal(formatDimming(11, [-1, 99, 0]), 'light 12 0.0000 16.0000 0.0000');
 });

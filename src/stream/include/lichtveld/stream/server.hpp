@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "lichtveld/stream/light.hpp"
 #include "lichtveld/stream/map.hpp"
 #include "lichtveld/stream/place.hpp"
 #include "lichtveld/stream/work.hpp"
@@ -41,6 +42,10 @@ struct ServerOptions {
   std::function<Place(std::size_t cube, const std::vector<Place>& places, Move move)> mover;
   // Called on the server's thread whenever places have changed. Must not block. May be empty.
   std::function<void(const std::vector<Place>& places)> places_changed;
+  // The lights that players may switch, as they are now; at most most_lights (protocol.hpp).
+  std::vector<Light> lights = {};
+  // Called on the server's thread when a player has changed one. Must not block. May be empty.
+  std::function<void(const std::vector<Light>& lights)> lights_changed = {};
   // What there is to report besides the stage `send` and the counts of ServerStatistics, which are this
   // server's own: called on the server's thread twice a second. Must not block. May be empty.
   std::function<Work()> work;
@@ -59,6 +64,7 @@ struct ServerStatistics {
   std::uint64_t maps_sent = 0, maps_skipped = 0, bytes_sent = 0;
   double seconds_sending = 0;                  // of the maps sent, each from when its peer could have it
   std::uint64_t moves = 0, moves_blocked = 0;  // blocked: at a wall or a cube, or asked for by a watcher
+  std::uint64_t dimmings = 0;                  // of lights, by players
   // Messages (of clients and through signaling), channels and offers that were not understood, too long or too
   // many.
   std::uint64_t messages_refused = 0;
