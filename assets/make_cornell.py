@@ -39,11 +39,10 @@ chart a face on a grid of 64 x 64 cells, at least one cell from its neighbours a
 texels at 256, which leaves each chart a gutter of 2 texels of its own, and the charts stay apart at 128 and 64.
 Walls get 14.5 texels a metre at 256, blocks 14.5 to 17, cubes 29.
 """
-import json
-import math
 import pathlib
-import struct
 import sys
+
+from glb import Glb, normal
 
 UNIT = 0.01  # metres in one published unit
 GAP = 0.002  # metres between the floor and the blocks' bottoms
@@ -100,13 +99,6 @@ SHORT_CHARTS = [(9, 56, 7, 7), (54, 56, 4, 4)] + [(17 + 8 * i, 56, 7, 7) for i i
 CUBE_CHARTS = [[(33 + 5 * i, 43 + 5 * row, 4, 4) for i in range(6)] for row in range(2)]
 
 
-def normal(a, b, c):
-    u, v = [b[i] - a[i] for i in range(3)], [c[i] - a[i] for i in range(3)]
-    n = (u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0])
-    length = math.sqrt(sum(x * x for x in n))
-    return tuple(x / length for x in n)
-
-
 def triangles(faces, charts):
     """Flat-shaded vertices and indices of quads; a face whose halves lie in two planes keeps a normal for each."""
     positions, normals, atlas, indices = [], [], [], []
@@ -126,60 +118,10 @@ def triangles(faces, charts):
     return positions, normals, atlas, indices
 
 
-class Glb:
-    """Collects accessors over one buffer view each and writes the binary container."""
-
-    def __init__(self):
-        self.data = bytearray()
-        self.gltf = {"accessors": [], "bufferViews": [], "materials": [], "meshes": [], "nodes": []}
-
-    def accessor(self, rows, kind, code, component, target, bounds=False):
-        view = {"buffer": 0, "byteOffset": len(self.data), "target": target}
-        flat = [x for row in rows for x in row]
-        packed = struct.pack("<%d%s" % (len(flat), code), *flat)
-        view["byteLength"] = len(packed)
-        self.data += packed + b"\0" * (-len(packed) % 4)
-        accessor = {"bufferView": len(self.gltf["bufferViews"]), "componentType": component, "count": len(rows),
-                    "type": kind}
-        if bounds:  # of the values as stored, which 32-bit rounding moved
-            stored = list(zip(*struct.iter_unpack("<3f", packed)))
-            accessor["min"], accessor["max"] = [min(x) for x in stored], [max(x) for x in stored]
-        self.gltf["bufferViews"].append(view)
-        self.gltf["accessors"].append(accessor)
-        return len(self.gltf["accessors"]) - 1
-
-    def material(self, name, colour, radiance=0.0):
-        material = {"name": name, "pbrMetallicRoughness": {"baseColorFactor": list(colour) + [1.0],
-                                                           "metallicFactor": 0.0, "roughnessFactor": 1.0}}
-        if radiance:
-            material["emissiveFactor"] = [1.0, 1.0, 1.0]
-            material["extensions"] = {"KHR_materials_emissive_strength": {"emissiveStrength": radiance}}
-            self.gltf["extensionsUsed"] = ["KHR_materials_emissive_strength"]
-        self.gltf["materials"].append(material)
-        return len(self.gltf["materials"]) - 1
-
-    def node(self, name, faces, charts, material, movable_at=None):
-        positions, normals, atlas, indices = triangles(faces, charts)
-        uv = self.accessor(atlas, "VEC2", "f", 5126, 34962)
-        attributes = {"POSITION": self.accessor(positions, "VEC3", "f", 5126, 34962, bounds=True),
-                      "NORMAL": self.accessor(normals, "VEC3", "f", 5126, 34962), "TEXCOORD_0": uv, "TEXCOORD_1": uv}
-        triangle_list = self.accessor([(i,) for i in indices], "SCALAR", "H", 5123, 34963)
-        self.gltf["meshes"].append({"name": name, "primitives": [
-            {"attributes": attributes, "indices": triangle_list, "material": material}]})
-        node = {"name": name, "mesh": len(self.gltf["meshes"]) - 1}
-        if movable_at:
-            node.update(translation=list(movable_at), extras={"movable": True})
-        self.gltf["nodes"].append(node)
-
-    def bytes(self):
-        gltf = dict(self.gltf, asset={"version": "2.0", "generator": "Lichtveld assets/make_cornell.py"}, scene=0,
-                    scenes=[{"name": "cornell", "nodes": list(range(len(self.gltf["nodes"])))}],
-                    buffers=[{"byteLength": len(self.data)}])
-        text = json.dumps(gltf, sort_keys=True, separators=(",", ":")).encode("ascii")
-        text += b" " * (-len(text) % 4)
-        size = 12 + 8 + len(text) + 8 + len(self.data)
-        return (struct.pack("<4sII", b"glTF", 2, size) + struct.pack("<I4s", len(text), b"JSON") + text +
-                struct.pack("<I4s", len(self.data), b"BIN\0") + bytes(self.data))
+def node(glb, name, faces, charts, material, movable_at=None):
+    positions, normals, atlas, indices = triangles(faces, charts)
+    more = {"translation": list(movable_at), "extras": {"movable": True}} if movable_at else {}
+    glb.node(name=name, mesh=glb.mesh(name, positions, normals, atlas, atlas, indices, material), **more)
 
 
 def cornell():
@@ -190,13 +132,14 @@ def cornell():
 
     walls = {"ceiling": lamp, "left": red, "right": green}
     for (name, corners), chart in zip(room().items(), WALL_CHARTS):
-        glb.node(name, [corners], [chart], walls.get(name, white))
-    glb.node("short_block", block([(130, 65), (82, 225), (240, 272), (290, 114)], 165), SHORT_CHARTS, white)
-    glb.node("tall_block", block([(423, 247), (265, 296), (314, 456), (472, 406)], 330), TALL_CHARTS, white)
+        node(glb, name, [corners], [chart], walls.get(name, white))
+    node(glb, "short_block", block([(130, 65), (82, 225), (240, 272), (290, 114)], 165), SHORT_CHARTS, white)
+    node(glb, "tall_block", block([(423, 247), (265, 296), (314, 456), (472, 406)], 330), TALL_CHARTS, white)
     # One before the tall block, one above the short block: free to move in x and y, and in each other's way.
-    glb.node("cube1", cube(CUBE), CUBE_CHARTS[0], orange, movable_at=place(408, 130, 120))
-    glb.node("cube2", cube(CUBE), CUBE_CHARTS[1], blue, movable_at=place(148, 250, 120))
-    return glb.bytes()
+    node(glb, "cube1", cube(CUBE), CUBE_CHARTS[0], orange, movable_at=place(408, 130, 120))
+    node(glb, "cube2", cube(CUBE), CUBE_CHARTS[1], blue, movable_at=place(148, 250, 120))
+    return glb.bytes("Lichtveld assets/make_cornell.py",
+                     {"name": "cornell", "nodes": list(range(len(glb.gltf["nodes"])))})
 
 
 if __name__ == "__main__":

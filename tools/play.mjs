@@ -4,7 +4,7 @@
  * once a player can join; everything else goes to stderr. A program that ends unasked is started again; when that is of
  * no use, or a signal comes, all are ended.
  *
- *   node tools/play.mjs [--host 127.0.0.1] [--port 8080] [--scene assets/cornell.glb] [--public] [-- SERVE OPTIONS]
+ *   node tools/play.mjs [--host 127.0.0.1] [--port 8080] [--scene assets/room.glb] [--public] [-- SERVE OPTIONS]
  *
  * --host is a name or address of this machine, for the page and for WebRTC; 0.0.0.0 or :: takes every address (WebRTC
  * then uses all but the loopback ones).
@@ -62,7 +62,7 @@ async function readOptions() {
     options: {
       host: { type: 'string' },
       port: { type: 'string', default: '8080' },
-      scene: { type: 'string', default: join(root, 'assets/cornell.glb') },
+      scene: { type: 'string', default: join(root, 'assets/room.glb') },
       public: { type: 'boolean', default: false },
       'public-ip': { type: 'string' },
       ...signalingOptions,
