@@ -41,6 +41,9 @@ const uint HISTOGRAM_BINS = 1024;
 const float LOG_LUMINANCE_MIN = -24.0;
 const float LOG_LUMINANCE_MAX = 24.0;
 
+// Middle grey of a presented map, the tone-mapping operator's usual key value.
+const float KEY = 0.18;
+
 // --sort
 const uint SORT_BITONIC = 0;
 const uint SORT_COMPARE_SWAP = 1;
@@ -165,6 +168,17 @@ struct CheckConstants {
 
 struct ReceiveConstants {
   uint texels;
+};
+
+// tone_map: what it has shown last.
+struct Exposure {
+  float average, white;  // luminances that are middle grey and white [W m^-2 sr^-1]; 0 before the first
+  uint adapted;          // 1: they are the light's own
+};
+
+struct ExposureConstants {
+  float fixed_average;     // above 0: that is middle grey
+  float brighter, darker;  // what is kept of the last exposure where the light is brighter, darker: 0..1
 };
 
 struct BrdfConstants {

@@ -4,6 +4,7 @@
 #include <cctype>
 #include <chrono>
 #include <set>
+#include <utility>
 
 #include "bake.hpp"
 #include "lichtveld/files/output.hpp"
@@ -31,11 +32,15 @@ nlohmann::ordered_json look_again(lightfield::LightField& light, const lightfiel
 // As a server: at rest first, then a light map after every move.
 void live(lightfield::LightField& light, const BakeJob& job, std::optional<gpu::Capture>& capture) {
   auto offsets = job.at_rest();
-  update(capture, [&] { light.settle(); });
+  const auto settle = [&] {
+    light.settle();
+    light.shown();
+  };
+  update(capture, settle);
   for (const auto& move : job.moves) {
     offsets[move.body] += move.by;
     light.place(offsets);
-    update(capture, [&] { light.settle(); });
+    update(capture, settle);
   }
   light.dim(job.scales);
 }
@@ -117,7 +122,11 @@ Baked bake_light_field(const BakeOptions& options, const BakeJob& job) {
   if (!options.dump.empty()) light->observe(dump_into(options.dump), options.dump_psf);
   light->place(job.moved());
   lightfield::Solution solution;
-  const auto settle = [&] { solution = light->settle(); };
+  lightfield::Shown shown;
+  const auto settle = [&] {
+    solution = light->settle();
+    shown = light->shown();
+  };
   // What --live has computed is only looked at once more.
   options.live ? settle() : update(capture, settle);
   Baked baked{.size = settings.size, .irradiance = light->irradiance(), .shown = {}, .apart = {}, .report = {}};
@@ -125,7 +134,7 @@ Baked bake_light_field(const BakeOptions& options, const BakeJob& job) {
   total.reset();
 
   const auto times = light->times();
-  if (!options.png.empty()) baked.shown = light->shown();
+  if (!options.png.empty()) baked.shown = std::move(shown);
   const auto links = options.live ? look_again(*light, settings, solution) : nlohmann::ordered_json();
   baked.report = report(device, engine.name, settings, solution, times, took.count());
   if (!links.empty()) baked.report["links"] = links;

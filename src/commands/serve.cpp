@@ -1,8 +1,10 @@
 // lichtveld serve: the render server of a room.
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include <charconv>
 #include <chrono>
+#include <cmath>
 #include <fstream>
 #include <stop_token>
 
@@ -11,6 +13,7 @@
 #include "lichtveld/lightfield/choice.hpp"
 #include "lichtveld/room/room.hpp"
 #include "lichtveld/scene/atlas.hpp"
+#include "lichtveld/scene/lights.hpp"
 #include "lichtveld/stream/encoder.hpp"
 #include "lichtveld/stream/protocol.hpp"
 #include "lichtveld/stream/server.hpp"
@@ -31,11 +34,13 @@ constexpr double usual_rate = 15;
 constexpr double share_of_a_map = 1.0 / 3;
 // Light that is off by more shows as blotches.
 constexpr double visible_error = 0.1;
+constexpr double longest_adaptation = 60;    // [s]
 constexpr std::size_t cubes_of_players = 2;  // as stream's protocol has it
 
 struct ServeOptions {
   std::string scene, token_file;
   LightOptions lights;
+  room::Eye eye;
   stream::ServerOptions stream;  // what the command line says of it
   std::string udp_port;          // PORT or FIRST-LAST; empty: any
   double rate = 30;
@@ -103,10 +108,17 @@ room::Direction direction_of(stream::Move move) {
   throw std::logic_error("no such move");
 }
 
-stream::EncodedMap encoded(const room::Map& map) {
-  return {.format = stream::MapFormat::png,
-          .bytes = stream::encode_png(map.shown.bytes, map.shown.size),
-          .places = seen_from_front(map.places)};
+std::string colour_of(const glm::vec3& srgb) {
+  const glm::ivec3 bytes = glm::round(255.0f * srgb);
+  return fmt::format("#{:02x}{:02x}{:02x}", bytes.r, bytes.g, bytes.b);
+}
+
+stream::EncodedMap encoded(const room::Map& map, const scene::Scene& scene, const glm::vec3& sky) {
+  return {
+      .format = stream::MapFormat::png,
+      .bytes = stream::encode_png(map.shown.bytes, map.shown.size),
+      .places = seen_from_front(map.places),
+      .sky = scene.sky ? colour_of(lightfield::displayed(map.scales[scene.sky->light] * sky, map.shown)) : ""};
 }
 
 stream::Work as_sent(const room::Work& work) {
@@ -152,10 +164,14 @@ void update_room(std::optional<gpu::Capture>& capture, const std::function<void(
 // The finest light maps that this machine renews often enough; says what to expect of them.
 void choose_quality(ServeOptions& options, const lightfield::Engine& engine, const gpu::Device& device,
                     const scene::Scene& scene, const std::function<bool()>& stopped) {
-  const double rate = options.rate_is_asked_for ? options.rate : usual_rate;
   lightfield::Forecast forecast(engine, device, scene, options.settings, *options.to_choose, stopped);
-  const auto expected = forecast.finest_within(
-      std::chrono::milliseconds(std::max(std::lround(1000 * share_of_a_map / rate), 1L)));
+  const auto finest_at = [&](double rate) {
+    return forecast.finest_within(
+        std::chrono::milliseconds(std::max(std::lround(1000 * share_of_a_map / rate), 1L)));
+  };
+  auto expected = finest_at(options.rate_is_asked_for ? options.rate : usual_rate);
+  // Where nobody asks for a rate, fewer maps are better than blotches.
+  if (!options.rate_is_asked_for && expected.error > visible_error) expected = finest_at(usual_rate / 2);
   options.settings.size = expected.quality.size;
   options.settings.psf = expected.quality.psf;
   spdlog::info("--size {} --psf {}: a map in {:.0f} ms after a move, {:.1f} % off", expected.quality.size,
@@ -186,12 +202,14 @@ void serve(ServeOptions options) {
   scene::check_atlas(scene, options.settings.size);
 
   const auto rest = room::places_at_rest(scene, cubes_of_players);
+  const glm::vec3 sky = scene.sky ? scene::mean_radiance(*scene.sky) : glm::vec3(0);
   std::unique_ptr<stream::Server> server;
   room::Room room(scene, engine.make(device, scene, options.settings),
                   {.rate = options.rate,
+                   .eye = options.eye,
                    .scales = scales,
                    .bodies = cubes_of_players,
-                   .publish = [&](const room::Map& map) { server->publish(encoded(map)); },
+                   .publish = [&](const room::Map& map) { server->publish(encoded(map, scene, sky)); },
                    .ended = [&] { return !server->refused().empty(); },
                    .around_update = [&](const std::function<void()>& work) { update_room(capture, work); }});
   const Closing closing{room, server};
@@ -229,6 +247,42 @@ void serve(ServeOptions options) {
   check_validation(device);
 }
 
+void add_eye_options(CLI::App& command, room::Eye& eye) {
+  command
+      .add_option_function<std::string>(
+          "--exposure",
+          [&eye](const std::string& text) {
+            float value = 0;
+            if (text == "auto") return eye.fixed.reset();
+            if (!CLI::detail::lexical_cast(text, value) || !(value > 0 && std::isfinite(value)))
+              throw UsageError("--exposure " + text + ": auto, or the radiance that is middle grey, above 0");
+            eye.fixed = value;
+          },
+          "What is shown as middle grey: the mean of what is lit, as an eye adapts, or always the same "
+          "radiance "
+          "[W/m2/sr]")
+      ->type_name("auto|L")
+      ->default_str("auto");
+  command
+      .add_option_function<std::string>(
+          "--adapt",
+          [&eye](const std::string& text) {
+            const auto parts = CLI::detail::split(text, ',');
+            double brighter = 0, darker = 0;
+            if (parts.size() != 2 || !CLI::detail::lexical_cast(parts[0], brighter) ||
+                !CLI::detail::lexical_cast(parts[1], darker) ||
+                !(brighter >= 0 && brighter <= longest_adaptation) ||
+                !(darker >= 0 && darker <= longest_adaptation))
+              throw UsageError("--adapt " + text + ": two time constants of 0..60 s, as in 0.3,0.9");
+            eye.brighter = brighter;
+            eye.darker = darker;
+          },
+          "Time constants with which the exposure follows where it becomes brighter, and darker [s]; 0,0: at "
+          "once")
+      ->type_name("S,S")
+      ->default_str("0.3,0.9");
+}
+
 }  // namespace
 
 void add_serve(CLI::App& application) {
@@ -255,6 +309,7 @@ void add_serve(CLI::App& application) {
       "The address at which this machine is reached from outside, where a 1:1 NAT stands before it");
   command->add_option("--rate", options->rate, "Most light maps a second")->capture_default_str();
   add_light_options(*command, options->lights);
+  add_eye_options(*command, options->eye);
   add_quality_options(*command, options->settings);
   command->get_option("--size")->default_str(
       "the finest that this machine renews at --rate, or 15 times a second");

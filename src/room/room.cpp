@@ -2,6 +2,7 @@
 
 #include <spdlog/spdlog.h>
 
+#include <cmath>
 #include <stdexcept>
 #include <thread>
 #include <utility>
@@ -56,7 +57,7 @@ class Room::Pipeline {
     while (!inbox_.stopped() && !(options_.ended && options_.ended())) {
       const auto start = Clock::now();
       sender_.wait();
-      const bool resting = settled() && !lighting_.changes();
+      const bool resting = settled() && adapted_ && !lighting_.changes();
       const auto news = inbox_.take(resting ? 1s : 0s);
       if (news) {
         log_.add("input", Clock::now() - news->came);
@@ -91,16 +92,30 @@ class Room::Pipeline {
   void update(const lightfield::LightField::Enough& enough) {
     light_->place(offsets_of(scene_, places_));
     light_->dim(lighting_.scales());
-    if (settled()) return;
+    if (settled() && adapted_) return;
+    const auto adaptation = this->adaptation();
     lightfield::Shown shown;
     options_.around_update([&] {
       shown = log_.time("update", [&] {
         light_->step(enough);
-        return light_->shown();
+        return light_->shown(adaptation);
       });
     });
+    adapted_ = shown.adapted;
     log_.set_times(light_->times());
-    sender_.send({std::move(shown), places_});
+    sender_.send({std::move(shown), places_, light_->scales()});
+  }
+
+  // Since the last map.
+  lightfield::Adaptation adaptation() {
+    const auto now = Clock::now();
+    const std::chrono::duration<double> passed = now - std::exchange(shown_at_, now);
+    const auto kept = [&](double constant) {
+      return constant > 0 ? static_cast<float>(std::exp(-passed.count() / constant)) : 0.0f;
+    };
+    return {.brighter = kept(options_.eye.brighter),
+            .darker = kept(options_.eye.darker),
+            .fixed = options_.eye.fixed};
   }
 
   // Between maps, while nothing moves: whether what is kept is what a fresh start would find.
@@ -122,6 +137,8 @@ class Room::Pipeline {
   std::unique_ptr<lightfield::LightField> light_;
   Places places_;
   Lighting lighting_;
+  Clock::time_point shown_at_ = {};
+  bool adapted_ = true;
   bool warned_ = false;
   MapSender sender_;  // last: it uses the rest
 };

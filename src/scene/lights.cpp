@@ -63,6 +63,13 @@ float solid_angle_of(const Sky& sky, std::uint32_t row) {
   return static_cast<float>((top - bottom) * 2 * pi / sky.width);
 }
 
+glm::vec3 mean_radiance(const Sky& sky) {
+  glm::dvec3 sum(0);
+  for (std::uint32_t pixel = 0; pixel < sky.radiance.size(); ++pixel)
+    sum += double{solid_angle_of(sky, pixel / sky.width)} * glm::dvec3(sky.radiance[pixel]);
+  return sum / (4 * std::numbers::pi);
+}
+
 glm::vec3 irradiance_of(const Sky& sky) {
   // A row's share of the ground's half sphere, cosine and all: sin^2 of its edges apart.
   const auto squared = [&](std::uint32_t edge) {

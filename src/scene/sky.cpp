@@ -144,7 +144,8 @@ std::vector<PunctualLight> take_out_suns(Sky& sky) {
 const char* format_of(const fs::path& file) {
   std::ifstream in(file, std::ios::binary);
   std::array<char, 4> start{};
-  if (!in.read(start.data(), start.size())) throw SceneError("sky " + file.string() + ": it cannot be read; give a .hdr, a .exr or R,G,B");
+  if (!in.read(start.data(), start.size()))
+    throw SceneError("sky " + file.string() + ": it cannot be read; give a .hdr, a .exr or R,G,B");
   if (start[0] == '#' && start[1] == '?') return "hdr";
   if (start == std::array<char, 4>{0x76, 0x2f, 0x31, 0x01}) return "openexr";
   throw SceneError("sky " + file.string() + ": it is neither Radiance .hdr nor OpenEXR");

@@ -54,7 +54,7 @@ std::optional<Move> parse_move(std::string_view text) {
   return std::nullopt;
 }
 
-std::string format_lights(const std::vector<Light>& lights) {
+std::string format_lights(const std::vector<Light>& lights, const std::string& sky) {
   auto list = nlohmann::ordered_json::array();
   for (const auto& light : lights) {
     for (const float scale : light.scale)
@@ -62,7 +62,9 @@ std::string format_lights(const std::vector<Light>& lights) {
         throw std::invalid_argument("a light's scale is outside 0.." + std::to_string(brightest_light));
     list.push_back({{"name", light.name.substr(0, light_name)}, {"scale", light.scale}});
   }
-  return nlohmann::ordered_json{{"lights", list}}.dump(-1, ' ', false, nlohmann::json::error_handler_t::ignore);
+  nlohmann::ordered_json message = {{"lights", list}};
+  if (!sky.empty()) message["sky"] = sky;
+  return message.dump(-1, ' ', false, nlohmann::json::error_handler_t::ignore);
 }
 
 bool asks_for_lights(std::string_view text) {

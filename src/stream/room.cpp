@@ -55,8 +55,9 @@ void Server::Room::publish(EncodedMap encoded) {
   if (encoded.bytes.empty()) throw std::invalid_argument("the published map has no bytes");
   auto map =
       std::make_shared<const Map>(Map{encoded.format, std::move(encoded.bytes), format_places(encoded.places)});
-  asio::post(io_, [this, map = std::move(map)] {
+  asio::post(io_, [this, map = std::move(map), sky = std::move(encoded.sky)] {
     newest_ = map;
+    if (std::exchange(sky_, sky) != sky) tell_lights();
     for (auto& [number, guest] : guests_) {
       if (!guest.peer->is_open()) continue;
       guest.peer->send_map(map);
@@ -182,13 +183,17 @@ void Server::Room::dimmed(Guest& guest, const Dimming& dimming) {
   scale = dimming.scale;
   count([](auto& s) { ++s.dimmings; });
   if (options_.lights_changed) options_.lights_changed(options_.lights);
-  for (auto& [number, other] : guests_)
-    if (other.follows_lights) tell_lights(other);
+  tell_lights();
+}
+
+void Server::Room::tell_lights() {
+  for (auto& [number, guest] : guests_)
+    if (guest.follows_lights) tell_lights(guest);
 }
 
 void Server::Room::tell_lights(Guest& guest) {
   if (!guest.peer->is_open()) return;
-  guest.peer->send_lights(format_lights(options_.lights));
+  guest.peer->send_lights(format_lights(options_.lights, sky_));
   collect(*guest.peer);
 }
 

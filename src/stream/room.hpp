@@ -66,6 +66,7 @@ struct Server::Room final : PeerListener {
 
   void moved(Guest& guest, Move move);
   void dimmed(Guest& guest, const Dimming& dimming);
+  void tell_lights();
   void tell_lights(Guest& guest);
 
   void run();
@@ -88,6 +89,7 @@ struct Server::Room final : PeerListener {
   Guests guests_;
   PeerNumber last_number_ = 0;
   std::shared_ptr<const Map> newest_;
+  std::string sky_;  // of the newest map
   TokenBucket offers_{limits::offers_per_second, limits::offers_burst};
   TokenBucket log_{limits::log_lines_per_second, limits::log_lines_burst};
   boost::asio::steady_timer tick_{io_}, roles_timer_{io_};

@@ -74,6 +74,41 @@ TEST_P(EveryEngine, ShowsWhatPresentingItsIrradianceShows) {
   EXPECT_EQ(present(device(), scene, {irradiance, 32}).bytes, shown.bytes);
 }
 
+// Twice as bright a room is two maps later as bright as the first was shown.
+TEST_P(EveryEngine, ItsExposureFollowsAsAnEyeDoes) {
+  const auto scene = furnace(0.5f);
+  const Settings settings{.size = 32, .psf = 24, .bounces = 2, .direct = Direct::exact};
+  const auto light = make(scene, settings);
+  light->settle();
+  const auto before = light->shown();
+  EXPECT_TRUE(before.adapted);
+  light->dim({glm::vec3(4)});
+  light->settle();
+  const Adaptation slow{.brighter = 0.5f, .darker = 0.9f};
+  const auto at_once = light->shown(slow);
+  EXPECT_NEAR(std::log2(at_once.average / before.average), 1, 0.05) << "half of the way of two powers";
+  EXPECT_FALSE(at_once.adapted);
+  EXPECT_GT(at_once.bytes[4 * 32 * 16 + 4 * 16], before.bytes[4 * 32 * 16 + 4 * 16]);
+  auto last = light->shown(slow);
+  EXPECT_NEAR(std::log2(last.average / before.average), 1.5, 0.05);
+  for (int maps = 0; maps < 20 && !last.adapted; ++maps) last = light->shown(slow);
+  EXPECT_TRUE(last.adapted);
+  EXPECT_NEAR(std::log2(last.average / before.average), 2, 0.05);
+  light->dim({glm::vec3(1)});
+  light->settle();
+  EXPECT_NEAR(std::log2(light->shown(slow).average / before.average), 1.8, 0.05) << "to the dark it is slower";
+  const auto fixed = light->shown({.fixed = 3.0f});
+  EXPECT_NEAR(fixed.average, 3, 1e-3);
+  EXPECT_EQ(light->shown({.fixed = 3.0f}).bytes, fixed.bytes);
+  // What is shown is what the host says such a radiance looks like.
+  const auto irradiance = light->irradiance();
+  const auto lit = std::ranges::find_if(irradiance, [](const glm::vec4& e) { return e.a > 0; });
+  const auto at = static_cast<std::size_t>(lit - irradiance.begin());
+  const float radiance = 1 + 0.5f / static_cast<float>(testing::pi) * lit->g;
+  EXPECT_NEAR(255 * displayed(glm::vec3(radiance), fixed).g, fixed.bytes[4 * at + 1], 1);
+  EXPECT_LT(fixed.bytes[4 * at + 1], 200);
+}
+
 TEST_P(EveryEngine, RefusesWhatCannotBe) {
   const auto scene = furnace(0.5f);
   EXPECT_THROW(make(scene, {.size = 8}), std::invalid_argument);
@@ -85,6 +120,7 @@ TEST_P(EveryEngine, SaysWhatItHasTaken) {
   const auto scene = furnace(0.5f);
   const auto light = make(scene, {.size = 32, .psf = 24, .bounces = 1});
   light->settle();
+  light->shown();
   const auto times = light->times();
   EXPECT_GT(times.host.at("texel_records").ms, 0);
   if (GetParam()->name == std::string_view("rays")) {

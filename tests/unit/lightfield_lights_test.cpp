@@ -144,6 +144,30 @@ TEST_F(PunctualLights, OneThatIsCarriedTakesItsLightAlong) {
   EXPECT_EQ(rays->irradiance(), fresh->irradiance());
 }
 
+// The map after a move has such light roughly; when nothing moves any more it is as if found afresh.
+TEST_F(PunctualLights, WhileTheyMoveTheyAreRoughAndThenWhole) {
+  auto scene = room(true);
+  scene.sky = scene::Sky{.radiance = {glm::vec3(0.5f)}};
+  const Settings settings{.size = 64, .psf = 96};
+  const auto rays = make_light_field("rays", device(), scene, settings);
+  rays->settle();
+  Offsets moved = at_rest(scene);
+  for (const float way : {0.1f, 0.2f, 0.3f}) {
+    moved[1] = {way, 0.1f, -way};
+    moved[2] = {2 * way, -way, -way};
+    rays->place(moved);
+    rays->step([](std::uint32_t) { return true; });
+  }
+  const auto rough = rays->irradiance();
+  rays->settle();
+  const auto fresh = make_light_field("rays", device(), scene, settings);
+  fresh->place(moved);
+  fresh->settle();
+  EXPECT_LT(reference::error_of(rough, fresh->irradiance()).rel_rmse, 0.25) << "a bounce behind, too";
+  EXPECT_GT(reference::error_of(rough, fresh->irradiance()).rel_rmse, 0.001);
+  EXPECT_LT(reference::error_of(rays->irradiance(), fresh->irradiance()).rel_rmse, 2e-3);
+}
+
 TEST_F(PunctualLights, HaveNoSurfaceThatDirectionsFind) {
   EXPECT_THROW(make_light_field("links", device(), room(false), {.size = 32, .direct = Direct::psf}),
                std::invalid_argument);

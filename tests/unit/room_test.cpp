@@ -284,7 +284,7 @@ class Failing : public lightfield::LightField {
   std::vector<lightfield::Light> before;
 
   lightfield::TexelView irradiance_view() const override { return {std::span<const glm::vec4>(), 0}; }
-  lightfield::Shown shown() override { return {.size = 1, .bytes = {1, 2, 3, 4}}; }
+  lightfield::Shown shown(const lightfield::Adaptation&) override { return {.size = 1, .bytes = {1, 2, 3, 4}}; }
   gpu::Times times() const override { return {}; }
 
  protected:

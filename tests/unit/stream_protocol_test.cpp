@@ -71,6 +71,7 @@ TEST(Protocol, MovesAreExactWords) {
 
 TEST(Protocol, LightsAreOneJsonText) {
   EXPECT_EQ(format_lights({}), R"({"lights":[]})");
+  EXPECT_EQ(format_lights({}, "#0a80ff"), R"({"lights":[],"sky":"#0a80ff"})");
   EXPECT_EQ(format_lights({{"lamp", {1, 0.5f, 0}}, {"a\"b", {2, 2, 2}}}),
             R"({"lights":[{"name":"lamp","scale":[1.0,0.5,0.0]},{"name":"a\"b","scale":[2.0,2.0,2.0]}]})");
   EXPECT_LT(format_lights({{std::string(100'000, 'x'), {1, 1, 1}}}).size(), 200u);

@@ -98,6 +98,9 @@ TEST_F(RoomTest, LightsAreThePlayersAndTheNewestIsToldToWhoAsks) {
   player.channel().send(std::string("light 3 1"));
   ASSERT_TRUE(refused_at_least(2)) << "there is no third";
   EXPECT_EQ(server->statistics().dimmings, 1u);
+  server->publish({.bytes = map_bytes(100, 1), .places = rest, .sky = "#102030"});
+  const auto dark = format_lights({{"lamp", {1, 1, 1}}, {"candle", {0.5f, 0.25f, 0}}}, "#102030");
+  ASSERT_TRUE(watcher.wait(told(dark))) << "the sky's colour comes with the map";
   EXPECT_FALSE(told(before)(quiet.state())) << "who has not asked is told nothing";
   EXPECT_FALSE(told(after)(quiet.state()));
 }

@@ -4,7 +4,7 @@ import type { Knowledge } from './knowledge';
 import { MapDecoder } from './map_decoder';
 import { LightPanel } from './light_panel';
 import { Lights } from './lights';
-import { Receiver, followLights, type Light } from './protocol';
+import { Receiver, followLights, type Lighting } from './protocol';
 import type { Room } from './room';
 import { fetchScene, type SceneFile } from './scene_file';
 import { Session, type SessionEvents, type State } from './session';
@@ -101,11 +101,12 @@ export class Player {
     const received = this.#receiver.take(data);
     if (received?.kind === 'map') void this.#maps.take(received);
     else if (received?.kind === 'refused') this.#refuse(received.reason);
-    else if (received?.kind === 'lights') this.#takeLights(received.lights);
+    else if (received?.kind === 'lights') this.#takeLights(received);
     else if (received?.kind === 'places') this.room.setPlaces((this.known.places = received.places));
   }
 
-  #takeLights(lights: readonly Light[]): void {
+  #takeLights({ lights, sky }: Lighting): void {
+    this.room.setSky(sky);
     this.known.lights = lights;
     this.#lights.take(lights);
     this.#lightPanel.show(lights);

@@ -32,10 +32,16 @@ export interface Light {
   readonly scale: LightScale;
 }
 
+export interface Lighting {
+  readonly lights: readonly Light[];
+  /** What the sky looks like, as #rrggbb; undefined where the room has none. */
+  readonly sky?: string;
+}
+
 export type Received =
   | ({ readonly kind: 'map' } & EncodedMap)
   | { readonly kind: 'places'; readonly places: readonly Place[] }
-  | { readonly kind: 'lights'; readonly lights: readonly Light[] }
+  | ({ readonly kind: 'lights' } & Lighting)
   | { readonly kind: 'refused'; readonly reason: string };
 
 const number = String.raw`[-+]?\d{1,9}(?:\.\d{1,50})?`;
@@ -65,12 +71,13 @@ const isLight = (value: unknown): value is Light => {
   return typeof name === 'string' && Array.isArray(scale) && scale.length === 3 && scale.every(good);
 };
 
-/** Reads `{"lights":[...]}`; undefined for anything else. */
-export function parseLights(text: string): Light[] | undefined {
+/** Reads `{"lights":[...],"sky":"#rrggbb"}`; undefined for anything else. */
+export function parseLights(text: string): Lighting | undefined {
   if (text.length > maxLightsLength || !text.startsWith('{')) return undefined;
   try {
-    const { lights } = JSON.parse(text) as { lights?: unknown };
-    return Array.isArray(lights) && lights.length <= maxLights && lights.every(isLight) ? lights : undefined;
+    const { lights, sky } = JSON.parse(text) as { lights?: unknown; sky?: unknown };
+    if (!Array.isArray(lights) || lights.length > maxLights || !lights.every(isLight)) return undefined;
+    return typeof sky === 'string' && /^#[0-9a-f]{6}$/.test(sky) ? { lights, sky } : { lights };
   } catch {
     return undefined;
   }
@@ -92,8 +99,8 @@ export class Receiver {
   take(data: string | ArrayBuffer): Received | undefined {
     if (typeof data !== 'string') return this.#takeChunk(data);
     if (data === mapComplete) return this.#finishMap();
-    const lights = parseLights(data);
-    if (lights) return { kind: 'lights', lights };
+    const lighting = parseLights(data);
+    if (lighting) return { kind: 'lights', ...lighting };
     const places = parsePlaces(data);
     return places ? { kind: 'places', places } : { kind: 'refused', reason: 'unknown text' };
   }

@@ -1,5 +1,7 @@
 import {
+  BackSide,
   Box3,
+  BoxGeometry,
   Color,
   ColorManagement,
   DoubleSide,
@@ -58,6 +60,8 @@ export class Room {
   height = 1;
   #renderer: WebGLRenderer;
   #scene = new Scene();
+  /** Around the room, seen from within alone: around it stays what the page has there. */
+  readonly #sky = new Mesh(new BoxGeometry(), new MeshBasicMaterial({ side: BackSide, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 }));
   #movable: readonly Object3D[] = [];
   #file: SceneFile | undefined;
   #targets: (Place | undefined)[] = [];
@@ -86,6 +90,10 @@ export class Room {
     this.#file = file;
     const box = new Box3().setFromObject(file.root);
     this.height = box.getSize(new Vector3()).y;
+    this.#sky.position.copy(box.getCenter(new Vector3()));
+    this.#sky.scale.copy(box.getSize(new Vector3()));
+    this.#sky.visible = false;
+    this.#scene.add(this.#sky);
     this.#frame(box);
     this.mark(this.#own);
   }
@@ -113,6 +121,13 @@ export class Room {
       surface.map = this.lightMap.texture;
       surface.needsUpdate = true;
     }
+    this.invalidate();
+  }
+
+  /** What is seen through windows, as #rrggbb; undefined: nothing is. */
+  setSky(colour: string | undefined): void {
+    this.#sky.visible = colour !== undefined;
+    if (colour) this.#sky.material.color.set(colour);
     this.invalidate();
   }
 

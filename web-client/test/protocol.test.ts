@@ -88,8 +88,10 @@ test('a map without end is refused once, forgotten, and the next one comes throu
 
 test('lights are read as the server writes them, and nothing else is', () => {
   const text = '{"lights":[{"name":"lamp","scale":[1,0.5,0]}]}';
-  assert.deepEqual(parseLights(text), [{ name: 'lamp', scale: [1, 0.5, 0] }]);
-  assert.deepEqual(new Receiver().take(text), { kind: 'lights', lights: parseLights(text) });
+  assert.deepEqual(parseLights(text), { lights: [{ name: 'lamp', scale: [1, 0.5, 0] }] });
+  assert.equal(parseLights('{"lights":[],"sky":"#0a80ff"}')?.sky, '#0a80ff');
+  assert.equal(parseLights('{"lights":[],"sky":"url(x)"}')?.sky, undefined);
+  assert.deepEqual(new Receiver().take(text), { kind: 'lights', ...parseLights(text) });
   for (const wrong of [
     '',
     '{',

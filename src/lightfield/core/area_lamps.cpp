@@ -217,6 +217,23 @@ void place_samples(AreaLamp& lamp, const glm::vec2& shift) {
   }
 }
 
+std::vector<LampSamples> middles_of(const std::vector<LampPatch>& patches) {
+  std::vector<LampSamples> found;
+  for (std::size_t number = 0; number < patches.size(); ++number) {
+    const std::size_t i = number % samples_of_lamp;
+    if (i == 0) found.emplace_back();
+    auto& to = found.back();
+    const auto& patch = patches[number];
+    const glm::vec3 place = patch.corner + (patch.u + patch.v) / (patch.triangle ? 3.0f : 2.0f),
+                    normal = glm::normalize(normal_of(patch));
+    to.x[i] = place.x, to.y[i] = place.y, to.z[i] = place.z;
+    to.nx[i] = normal.x, to.ny[i] = normal.y, to.nz[i] = normal.z;
+    to.back[i] = patch.double_sided ? -1.0f : 0.0f;
+    to.intensity[i] = area_of(patch) * patch.emission;
+  }
+  return found;
+}
+
 glm::vec3 irradiance_of(const LampPatch& patch, const glm::vec3& place, const glm::vec3& normal,
                         const glm::vec3& face) {
   const glm::vec3 corner = patch.corner - place;

@@ -28,9 +28,9 @@ constexpr std::uint32_t samples_of_lamp = 64;
 
 // Points on a lamp, each of which stands for as much of its power: area times mean radiance.
 struct LampSamples {
-  std::array<float, samples_of_lamp> x, y, z, nx, ny, nz;  // place and front, bodies at rest [m]
-  std::array<float, samples_of_lamp> back;           // -1 where it shines from its back, too, and 0 where not
-  std::array<glm::vec3, samples_of_lamp> intensity;  // area * Le that it stands for [W sr^-1]
+  std::array<float, samples_of_lamp> x{}, y{}, z{}, nx{}, ny{}, nz{};  // place and front, bodies at rest [m]
+  std::array<float, samples_of_lamp> back{};           // -1 where it shines from its back, too, and 0 where not
+  std::array<glm::vec3, samples_of_lamp> intensity{};  // area * Le that it stands for [W sr^-1]
 };
 
 struct AreaLamp {
@@ -45,6 +45,10 @@ struct AreaLamp {
   scene::Box box = {};                    // of the patches [m]
   std::vector<LampSamples> samples = {};  // one, or of a soft one as many as receivers have sets
 };
+
+// A point for each patch, in its middle, with all that it sends: what a lamp of many small ones looks like from
+// afar. Those of the last that are none send nothing.
+std::vector<LampSamples> middles_of(const std::vector<LampPatch>& patches);
 
 // Puts samples on the patches behind those that there are, which `shift` sets off against others (its x in
 // -0.5..0.5 of a sample's share); and finds their box.

@@ -26,9 +26,10 @@ constexpr int rays_that_decide = 64;
 // first [its sides].
 constexpr std::uint32_t block_side = 4;
 constexpr float block_reach = 8;
-// Where all lamps together have more patches, those of more than a few are the sum over their samples: in
-// closed form it would take too long.
-constexpr std::size_t most_patches = 1024, few_patches = 16;
+// Lamps of more than a few patches are points in their middles from so far away [their boxes' diagonals]; where
+// all lamps together have more than that many patches, from everywhere: in closed form it would take too long.
+constexpr std::size_t few_patches = 16, most_patches = 4096;
+constexpr float afar = 1.5f;
 constexpr std::uint32_t receivers_of_a_task = 256, blocks_of_a_task = 16;
 // A ray ends this share of its way before its sample, which lies on a surface.
 constexpr float short_of_sample = 1 - 1e-4f;
@@ -46,6 +47,14 @@ void weigh(const LampSamples& samples, const glm::vec3& to, const TexelRecord& r
     const float weight = facing * there / (squared * squared);
     weights[i] = std::min(std::min(squared, facing), std::min(above, there)) > 0 ? weight : 0.0f;
   }
+}
+
+// Of all samples, where of each eight the first has been looked at: what is hidden of those. Eight whose first
+// brings no light are as most others are.
+std::uint64_t as_looked(std::uint64_t hidden, std::uint64_t looked_at) {
+  hidden &= eighth, looked_at &= eighth;
+  if (2 * std::popcount(hidden) > std::popcount(looked_at)) hidden |= eighth & ~looked_at;
+  return hidden * 0xff;
 }
 
 scene::Box shifted(const scene::Box& box, const glm::vec3& by, float grown) {
@@ -85,6 +94,7 @@ LampLight::LampLight(const scene::RayIndex& index, const scene::Scene& scene,
       scene_(scene),
       receivers_(receivers),
       sets_(sets),
+      covered_(receivers.size(), 0),
       irradiance_(receivers.size(), glm::vec3(0)),
       soft_(receivers.size(), glm::vec3(0)) {
   find_blocks(size);
@@ -95,11 +105,15 @@ LampLight::LampLight(const scene::RayIndex& index, const scene::Scene& scene,
   for (auto& shape : shapes) {
     Lamp& lamp = lamps_.emplace_back();
     lamp.shape = std::move(shape);
-    lamp.sampled = patches > most_patches && lamp.shape.patches.size() > few_patches;
+    if (lamp.shape.patches.size() > few_patches) {
+      lamp.from_afar = middles_of(lamp.shape.patches);
+      lamp.afar = patches > most_patches ? 0 : afar * glm::distance(lamp.shape.box.min, lamp.shape.box.max);
+    }
     lamp.unshadowed.assign(receivers.size(), glm::vec3(0));
     lamp.arriving = lamp.unshadowed;
     lamp.own.assign(receivers.size(), 0);
     lamp.seen = lamp.own;
+    lamp.rough.assign(scene.bodies.size(), 0);
     lamp.hidden.assign(scene.bodies.size(), std::vector<std::vector<Hidden>>(scene.bodies.size()));
   }
 }
@@ -164,14 +178,23 @@ void LampLight::find_neighbours(std::uint32_t size) {
   }
 }
 
-void LampLight::light(const scene::Offsets& offsets, const scene::Scales& scales, const Moves& moves) {
+bool LampLight::is_rough() const {
+  return std::ranges::any_of(lamps_, [](const Lamp& lamp) {
+    return lamp.all_rough || std::ranges::find(lamp.rough, 1) != lamp.rough.end();
+  });
+}
+
+void LampLight::light(const scene::Offsets& offsets, const scene::Scales& scales, const Moves& moves,
+                      Care care) {
   offsets_ = offsets;
   scales_ = scales;
   std::vector<char> touched(receivers_.size(), moves.dimmed);
-  if (moves.any()) {
+  for (std::uint32_t body = 0; body < scene_.bodies.size(); ++body)
+    if (moves.has(body)) find_covered(body);
+  if (moves.any() || (care == Care::whole && is_rough())) {
     progress::Work work("light straight from lamps", lamps_.size());
     for (auto& lamp : lamps_) {
-      const auto by_lamp = light(lamp, moves);
+      const auto by_lamp = light(lamp, moves, care);
       for (std::size_t i = 0; i < touched.size(); ++i) touched[i] |= by_lamp[i];
       work.done();
     }
@@ -182,15 +205,17 @@ void LampLight::light(const scene::Offsets& offsets, const scene::Scales& scales
     for (const auto& lamp : lamps_) {
       const glm::vec3 light = scales_[lamp.shape.light] * lamp.arriving[i];
       irradiance_[i] += light;
-      if (lamp.shape.soft) soft_[i] += light;
+      if (lamp.shape.soft || lamp.all_rough) soft_[i] += light;
     }
   });
 }
 
-std::vector<char> LampLight::light(Lamp& lamp, const Moves& moves) {
+std::vector<char> LampLight::light(Lamp& lamp, const Moves& moves, Care care) {
   const auto bodies = static_cast<std::uint32_t>(scene_.bodies.size());
-  const bool all = moves.has(lamp.shape.body);
-  const auto moved = [&](std::uint32_t body) { return all || moves.has(body); };
+  const bool whole = care == Care::whole, own_move = moves.has(lamp.shape.body);
+  const bool all = own_move || (whole && lamp.all_rough);
+  const auto moved = [&](std::uint32_t body) { return all || moves.has(body) || (whole && lamp.rough[body]); };
+  const Look look = !whole && (lamp.shape.soft || own_move) ? Look::eighth : Look::shared;
   enum : char { same, hidden_anew, reset };
   std::vector<char> touched(receivers_.size(), same);
   for (std::uint32_t body = 1; body < bodies; ++body)
@@ -202,7 +227,7 @@ std::vector<char> LampLight::light(Lamp& lamp, const Moves& moves) {
         }
   for (std::uint32_t body = 0; body < bodies; ++body) {
     if (!moved(body)) continue;
-    find_own(lamp, body);
+    find_own(lamp, body, look);
     const auto& blocks = blocks_of_body_[body];
     if (blocks.size() == 0) continue;
     for (auto at = blocks_[blocks.first].first; at < blocks_[blocks.end - 1].end; ++at)
@@ -213,7 +238,7 @@ std::vector<char> LampLight::light(Lamp& lamp, const Moves& moves) {
       if (body == of) continue;
       const bool anew = moved(body) || moved(of);
       auto& hidden = lamp.hidden[body][of];
-      if (anew) hidden = find_hidden(lamp, body, of);
+      if (anew) hidden = find_hidden(lamp, body, of, look);
       for (const auto& [receiver, bits] : hidden) {
         if (!anew && touched[receiver] != reset) continue;
         lamp.seen[receiver] &= ~bits;
@@ -224,7 +249,27 @@ std::vector<char> LampLight::light(Lamp& lamp, const Moves& moves) {
                  [&](std::uint32_t receiver) {
                    if (touched[receiver] != same) lamp.arriving[receiver] = arriving(lamp, receiver);
                  });
+  if (look == Look::eighth) {
+    lamp.all_rough |= all;
+    for (std::uint32_t body = 0; body < bodies; ++body) lamp.rough[body] |= moved(body);
+  } else if (whole) {
+    lamp.all_rough = false;
+    std::ranges::fill(lamp.rough, 0);
+  }
   return touched;
+}
+
+// Of the receivers of a body.
+void LampLight::find_covered(std::uint32_t body) {
+  const auto& blocks = blocks_of_body_[body];
+  for_each_index(blocks.first, blocks.end, blocks_of_a_task, [&](std::uint32_t i) {
+    for (auto at = blocks_[i].first; at < blocks_[i].end; ++at) {
+      const std::uint32_t receiver = order_[at];
+      const auto& record = receivers_[receiver];
+      const bool meets = body != 0 && index_.may_meet_own_body(record.triangle, record.face);
+      covered_[receiver] = contact(receiver, 0) || (meets && contact(receiver, body));
+    }
+  });
 }
 
 // Whether a body lies on it, so that nothing arrives.
@@ -265,9 +310,12 @@ glm::vec3 LampLight::unshadowed(const Lamp& lamp, std::uint32_t receiver) const 
   glm::vec3 sum(0);
   Samples weights;
   const auto& intensity = samples(lamp, receiver).intensity;
-  if (lamp.sampled) {
-    weigh(lamp, receiver, weights);
-    for (std::uint32_t i = 0; i < samples_of_lamp; ++i) sum += intensity[i] * weights[i];
+  const glm::vec3 middle = (lamp.shape.box.min + lamp.shape.box.max) / 2.0f + lamp_at;
+  if (!lamp.from_afar.empty() && glm::distance(at, middle) >= lamp.afar) {
+    for (const auto& points : lamp.from_afar) {
+      lightfield::weigh(points, lamp_at - at, record, weights);
+      for (std::uint32_t i = 0; i < samples_of_lamp; ++i) sum += points.intensity[i] * weights[i];
+    }
   } else {
     for (const auto& patch : lamp.shape.patches)
       sum += irradiance_of(patch, at - lamp_at, record.normal, record.face);
@@ -301,11 +349,12 @@ void LampLight::weigh(const Lamp& lamp, std::uint32_t receiver, Samples& weights
 
 // Blocks that see the lamp otherwise than those around them look at all samples: the rim of a small part that
 // is seen, or hidden, may lie between those that they have looked at.
-void LampLight::find_own(Lamp& lamp, std::uint32_t body) const {
+void LampLight::find_own(Lamp& lamp, std::uint32_t body, Look look) const {
   const auto& blocks = blocks_of_body_[body];
   std::vector<Sight> sights(blocks.size());
   for_each_index(blocks.first, blocks.end, blocks_of_a_task,
-                 [&](std::uint32_t i) { sights[i - blocks.first] = find_own(lamp, body, blocks_[i], false); });
+                 [&](std::uint32_t i) { sights[i - blocks.first] = find_own(lamp, body, blocks_[i], look); });
+  if (look == Look::eighth) return;
   const auto differs = [&](std::uint32_t block) {
     const Sight own = sights[block - blocks.first];
     return (own == Sight::dark || own == Sight::lit) &&
@@ -315,11 +364,11 @@ void LampLight::find_own(Lamp& lamp, std::uint32_t body) const {
            });
   };
   for_each_index(blocks.first, blocks.end, blocks_of_a_task, [&](std::uint32_t i) {
-    if (differs(i)) find_own(lamp, body, blocks_[i], true);
+    if (differs(i)) find_own(lamp, body, blocks_[i], Look::whole);
   });
 }
 
-LampLight::Sight LampLight::find_own(Lamp& lamp, std::uint32_t body, const Block& block, bool whole) const {
+LampLight::Sight LampLight::find_own(Lamp& lamp, std::uint32_t body, const Block& block, Look look) const {
   BlockBits looked_at{};
   bool meets_body = false;
   for (std::uint32_t i = 0; i < block.size(); ++i) {
@@ -327,13 +376,13 @@ LampLight::Sight LampLight::find_own(Lamp& lamp, std::uint32_t body, const Block
     const auto& record = receivers_[receiver];
     const glm::vec3 unshadowed = lamp.unshadowed[receiver] = this->unshadowed(lamp, receiver);
     const bool meets = body != 0 && index_.may_meet_own_body(record.triangle, record.face);
-    if (unshadowed == glm::vec3(0) || contact(receiver, 0) || (meets && contact(receiver, body))) continue;
+    if (unshadowed == glm::vec3(0) || covered_[receiver]) continue;
     looked_at[i] = shining(lamp, receiver);
     meets_body |= meets;
   }
   BlockBits left = looked_at;
   const auto leave_out_hidden = [&](std::uint32_t by) {
-    const auto out_of_sight = hidden(lamp, by, block, left, left, whole);
+    const auto out_of_sight = hidden(lamp, by, block, left, left, look);
     for (std::uint32_t i = 0; i < block.size(); ++i) left[i] &= ~out_of_sight[i];
   };
   leave_out_hidden(0);
@@ -353,9 +402,9 @@ LampLight::Sight LampLight::find_own(Lamp& lamp, std::uint32_t body, const Block
 }
 
 // Of the samples that each receiver of a block looks at those that a body hides, which `may_be` are all of,
-// too. `whole`: looks at all of them in any case.
+// too.
 LampLight::BlockBits LampLight::hidden(const Lamp& lamp, std::uint32_t body, const Block& block,
-                                       const BlockBits& looked_at, const BlockBits& may_be, bool whole) const {
+                                       const BlockBits& looked_at, const BlockBits& may_be, Look look) const {
   struct Of {
     std::uint32_t in_block, sample;
   };
@@ -367,7 +416,7 @@ LampLight::BlockBits LampLight::hidden(const Lamp& lamp, std::uint32_t body, con
     for (std::size_t lane = 0; lane < of.size(); ++lane)
       found[of[lane].in_block] |= Bits{occluded >> lane & 1} << of[lane].sample;
   };
-  const auto look = [&](std::uint32_t i, Bits some) {
+  const auto look_at = [&](std::uint32_t i, Bits some) {
     if (some == 0) return;
     const std::uint32_t receiver = order_[block.first + i];
     const auto& samples = this->samples(lamp, receiver);
@@ -380,27 +429,32 @@ LampLight::BlockBits LampLight::hidden(const Lamp& lamp, std::uint32_t body, con
   };
   int looked = 0, hid = 0;
   for (std::uint32_t i = 0; i < block.size(); ++i) {
-    look(i, may_be[i] & (eighth << i % 8));
+    look_at(i, may_be[i] & (eighth << i % 8));
     looked += std::popcount(looked_at[i] & (eighth << i % 8));
   }
   queue.flush(trace);
   for (const Bits bits : found) hid += std::popcount(bits);
-  const bool decided = !whole && looked >= rays_that_decide;
+  const bool decided = look != Look::whole && looked >= rays_that_decide;
   if (decided && hid == 0) return found;
   if (decided && hid == looked) return may_be;
-  for (std::uint32_t i = 0; i < block.size(); ++i) look(i, may_be[i] & ~(eighth << i % 8));
+  if (look == Look::eighth) {
+    for (std::uint32_t i = 0; i < block.size(); ++i)
+      found[i] = as_looked(found[i] >> i % 8, looked_at[i] >> i % 8) & may_be[i];
+    return found;
+  }
+  for (std::uint32_t i = 0; i < block.size(); ++i) look_at(i, may_be[i] & ~(eighth << i % 8));
   queue.flush(trace);
   return found;
 }
 
-std::vector<LampLight::Hidden> LampLight::find_hidden(const Lamp& lamp, std::uint32_t body,
-                                                      std::uint32_t of) const {
+std::vector<LampLight::Hidden> LampLight::find_hidden(const Lamp& lamp, std::uint32_t body, std::uint32_t of,
+                                                      Look look) const {
   const auto& blocks = blocks_of_body_[of];
   std::vector<std::vector<Hidden>> of_task((blocks.size() + blocks_of_a_task - 1) / blocks_of_a_task);
   for_each_index(0, static_cast<std::uint32_t>(of_task.size()), 1, [&](std::uint32_t task) {
     const auto first = blocks.first + task * blocks_of_a_task;
     for (auto i = first; i < std::min(first + blocks_of_a_task, blocks.end); ++i)
-      find_hidden(lamp, body, of, blocks_[i], of_task[task]);
+      find_hidden(lamp, body, of, blocks_[i], look, of_task[task]);
   });
   std::vector<Hidden> all;
   for (const auto& some : of_task) all.insert(all.end(), some.begin(), some.end());
@@ -408,7 +462,7 @@ std::vector<LampLight::Hidden> LampLight::find_hidden(const Lamp& lamp, std::uin
 }
 
 void LampLight::find_hidden(const Lamp& lamp, std::uint32_t body, std::uint32_t of, const Block& block,
-                            std::vector<Hidden>& found) const {
+                            Look look, std::vector<Hidden>& found) const {
   const float skin = index_.skin();
   const glm::vec3& lamp_at = offsets_[lamp.shape.body];
   const scene::Box box = shifted(scene_.bodies[body].box, offsets_[body], skin),
@@ -442,7 +496,7 @@ void LampLight::find_hidden(const Lamp& lamp, std::uint32_t body, std::uint32_t 
     looked_at[i] = lamp.own[receiver] & shining(lamp, receiver);
     may_be[i] = looked_at[i] & crossing;
   }
-  const auto bits = hidden(lamp, body, block, looked_at, may_be);
+  const auto bits = hidden(lamp, body, block, looked_at, may_be, look);
   for (std::uint32_t i = 0; i < block.size(); ++i)
     if (bits[i] != 0) found.push_back({order_[block.first + i], bits[i]});
 }

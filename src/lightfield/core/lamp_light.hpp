@@ -29,6 +29,10 @@ struct SampleSets {
 
 class LampLight {
  public:
+  // While things move, the light of lamps that move and of soft ones may be rough: receivers do with an eighth
+  // of the samples each, and what they bring is soft.
+  enum class Care { rough, whole };
+
   // More are taken together by where they lie: each costs so many bytes and a closed form a receiver.
   static constexpr std::size_t most_lamps = 64;
   static constexpr std::uint64_t bytes_a_lamp = 40;  // two irradiances, two masks
@@ -39,7 +43,10 @@ class LampLight {
 
   // Bodies are where `offsets` say, lights give `scales` times what the file says; `moves`: since the last
   // time.
-  void light(const scene::Offsets& offsets, const scene::Scales& scales, const Moves& moves);
+  void light(const scene::Offsets& offsets, const scene::Scales& scales, const Moves& moves,
+             Care care = Care::whole);
+  // Whether some of it is.
+  bool is_rough() const;
 
   // E [W m^-2] of each receiver; and of that what soft lamps bring, which differs from neighbour to neighbour
   // by their samples.
@@ -58,8 +65,14 @@ class LampLight {
   };
   struct Lamp {
     AreaLamp shape;
-    bool sampled = false;  // E without anything in between too, instead of in closed form
+    // Of many patches: what it is from afar, and how far that is; E without anything in between is a sum over
+    // these points then, instead of in closed form.
+    std::vector<LampSamples> from_afar = {};
+    float afar = 0;                               // from the middle of its box [m]
     std::vector<glm::vec3> unshadowed, arriving;  // E of each receiver [W m^-2]
+    // Of which bodies the masks are rough, those that hide and those of their receivers; all: of every one.
+    std::vector<char> rough = {};
+    bool all_rough = false;
     std::vector<Bits> own, seen;  // what the standing scene and the receiver's body leave; and all
     std::vector<std::vector<std::vector<Hidden>>> hidden;  // by body, then by the receivers' body
   };
@@ -74,14 +87,17 @@ class LampLight {
   // How a block's receivers see a lamp, by the samples that they have looked at.
   enum class Sight : char { none, dark, lit, mixed };  // none: nothing would arrive anyhow
 
+  void find_covered(std::uint32_t body);
   void find_blocks(std::uint32_t size);
   void find_neighbours(std::uint32_t size);
   // True for each receiver to which another light may arrive now.
-  std::vector<char> light(Lamp& lamp, const Moves& moves);
-  void find_own(Lamp& lamp, std::uint32_t body) const;
-  Sight find_own(Lamp& lamp, std::uint32_t body, const Block& block, bool whole) const;
-  std::vector<Hidden> find_hidden(const Lamp& lamp, std::uint32_t body, std::uint32_t of) const;
-  void find_hidden(const Lamp& lamp, std::uint32_t body, std::uint32_t of, const Block& block,
+  std::vector<char> light(Lamp& lamp, const Moves& moves, Care care);
+  // Which samples a block's receivers look at: an eighth each; all where these disagree; all.
+  enum class Look { eighth, shared, whole };
+  void find_own(Lamp& lamp, std::uint32_t body, Look look) const;
+  Sight find_own(Lamp& lamp, std::uint32_t body, const Block& block, Look look) const;
+  std::vector<Hidden> find_hidden(const Lamp& lamp, std::uint32_t body, std::uint32_t of, Look look) const;
+  void find_hidden(const Lamp& lamp, std::uint32_t body, std::uint32_t of, const Block& block, Look look,
                    std::vector<Hidden>& found) const;
   // Whether one sample alone matters.
   static bool is_point(const Lamp& lamp) {
@@ -94,7 +110,7 @@ class LampLight {
   void weigh(const Lamp& lamp, std::uint32_t receiver, std::array<float, samples_of_lamp>& weights) const;
   Bits shining(const Lamp& lamp, std::uint32_t receiver) const;
   BlockBits hidden(const Lamp& lamp, std::uint32_t body, const Block& block, const BlockBits& looked_at,
-                   const BlockBits& may_be, bool whole = false) const;
+                   const BlockBits& may_be, Look look) const;
   glm::vec3 start(std::uint32_t receiver) const;
   bool contact(std::uint32_t receiver, std::uint32_t body) const;
   glm::vec3 arriving(const Lamp& lamp, std::uint32_t receiver) const;
@@ -111,6 +127,7 @@ class LampLight {
   scene::Offsets offsets_;
   scene::Scales scales_;
   std::vector<Lamp> lamps_;
+  std::vector<char> covered_;  // of receivers: what stands still or their own body lies on them
   std::vector<glm::vec3> irradiance_, soft_;
 };
 

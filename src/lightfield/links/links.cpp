@@ -21,9 +21,7 @@ Links::Links(const gpu::Device& device, const scene::Scene& scene, const Setting
 
 bool Links::compute(Light before, const Moves& moves, const Enough& enough, Solution& solution) {
   if (before == Light::unknown || before == Light::moved) links_.link(offsets(), scales(), moves, solution);
-  const bool settled = converge(before, enough, solution);
-  present();
-  return settled;
+  return converge(before, enough, solution);
 }
 
 double Links::error_estimate() const {
@@ -88,12 +86,13 @@ bool Links::converge(Light before, const Enough& enough, Solution& solution) {
       solution, [&] { bounce(solution); }, enough);
 }
 
-void Links::present() {
+Shown Links::shown(const Adaptation& adaptation) {
   gpu::Frame frame(device_, {"links", "present"});
   brdf_.record(frame, links_.map());
   links_.find_shown(frame);
-  tone_map_.record(frame, links_.map());
+  tone_map_.record(frame, links_.map(), adaptation);
   frame.submit_and_wait();
+  return tone_map_.shown(links_.map());
 }
 
 }  // namespace lichtveld::lightfield

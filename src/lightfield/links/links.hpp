@@ -17,7 +17,7 @@ class Links final : public LightField {
   Links(const gpu::Device& device, const scene::Scene& scene, const Settings& settings);
 
   TexelView irradiance_view() const override { return {device_, links_.map().total_irradiance}; }
-  Shown shown() override { return download_presented(device_, links_.map()); }
+  Shown shown(const Adaptation& adaptation) override;
   gpu::Times times() const override { return device_.times().so_far() - begun_; }
 
  private:
@@ -30,7 +30,6 @@ class Links final : public LightField {
   void note_change(Solution& solution) const;
   void part_bounce(Solution& solution);
   bool converge(Light before, const Enough& enough, Solution& solution);
-  void present();
 
   const gpu::Device& device_;
   const gpu::Times begun_;  // Device::times() before it all

@@ -82,13 +82,6 @@ void check_on(const gpu::Device& device, const Settings& settings) {
                                 std::to_string(device.summary().max_image_size) + " at most");
 }
 
-Shown download_presented(const gpu::Device& device, const LightMap& map) {
-  const auto pixels = gpu::download<std::array<std::uint8_t, 4>>(device, map.presented);
-  return {.format = Shown::Format::srgb8,
-          .size = map.size,
-          .bytes = {pixels.front().data(), pixels.front().data() + 4 * pixels.size()}};
-}
-
 Geometry::Geometry(const gpu::Device& device, const scene::Scene& scene)
     : scene(scene),
       sphere(scene::bounding_sphere(scene)),

@@ -41,9 +41,6 @@ void put_emission(const gpu::Device& device, const LightMap& map, const scene::S
 // Throws std::invalid_argument if the device cannot do images of that size.
 void check_on(const gpu::Device& device, const Settings& settings);
 
-// The presented map.
-Shown download_presented(const gpu::Device& device, const LightMap& map);
-
 // An image in atlas space; `usage` besides storage and transfers.
 gpu::Image atlas_image(const gpu::Device& device, const char* name, std::uint32_t size, vk::Format format,
                        vk::ImageUsageFlags usage = {});

@@ -30,20 +30,21 @@ void Presenter::dim(const scene::Scales& scales) {
   put_emission(device_, map_, scene_, records_, scales);
 }
 
-Shown Presenter::show(const TexelView& irradiance, std::span<const float> covered) {
+Shown Presenter::show(const TexelView& irradiance, const Adaptation& adaptation,
+                      std::span<const float> covered) {
   irradiance.copy_to(device_, map_.total_irradiance);
   if (!covered.empty()) gpu::fill<float>(device_, map_.cover, covered);
   gpu::Frame frame(device_, {"present"});
   geometry_texture_.find_shown(frame, map_);
   brdf_.record(frame, map_);
-  tone_map_.record(frame, map_);
+  tone_map_.record(frame, map_, adaptation);
   frame.submit_and_wait();
-  return download_presented(device_, map_);
+  return tone_map_.shown(map_);
 }
 
 Shown present(const gpu::Device& device, const scene::Scene& scene, const TexelView& irradiance) {
   const TexelRecords records(scene, irradiance.width());
-  return Presenter(device, scene, records).show(irradiance);
+  return Presenter(device, scene, records).show(irradiance, {});
 }
 
 }  // namespace lichtveld::lightfield

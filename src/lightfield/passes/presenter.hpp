@@ -21,7 +21,7 @@ class Presenter {
 
   // rgb: E [W m^-2], as wide as the atlas. `covered`: texels on which something lies show their nearest open
   // one (see GeometryTexture::find_shown), a value above 0 each; as many as the atlas has texels, or none.
-  Shown show(const TexelView& irradiance, std::span<const float> covered = {});
+  Shown show(const TexelView& irradiance, const Adaptation& adaptation, std::span<const float> covered = {});
 
  private:
   const gpu::Device& device_;

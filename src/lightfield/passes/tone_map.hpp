@@ -1,8 +1,9 @@
 // tone_map: radiance to what a browser shows: exposure from a log-luminance histogram over the valid texels,
-// Reinhard's operator on luminance, sRGB. Thesis, section 4.7; Reinhard et al. 2002. Reads radiance,
-// position and shown; writes presented. Costs texels, once a solve.
+// which adapts from map to map, Reinhard's operator on luminance, sRGB. Thesis, section 4.7; Reinhard et al.
+// 2002. Reads radiance, position and shown; writes presented. Costs texels, once a solve.
 #pragma once
 
+#include "lichtveld/lightfield/shown.hpp"
 #include "passes/light_map.hpp"
 
 namespace lichtveld::lightfield {
@@ -10,10 +11,15 @@ namespace lichtveld::lightfield {
 class ToneMap {
  public:
   explicit ToneMap(const gpu::Device& device);
-  void record(gpu::Frame& frame, const LightMap& map) const;
+  // The exposure follows from that of the last record().
+  void record(gpu::Frame& frame, const LightMap& map, const Adaptation& adaptation) const;
+  // Of the last record(), once its frame is done.
+  Shown shown(const LightMap& map) const;
 
  private:
-  gpu::Buffer histogram_, exposure_;
+  const gpu::Device& device_;
+  gpu::Buffer histogram_;
+  gpu::Buffer exposure_;  // shaders::Exposure, host-visible
   gpu::ComputePipeline count_, expose_, map_;
 };
 

@@ -71,11 +71,14 @@ std::uint64_t Rays::bytes() const {
 
 bool Rays::compute(Light before, const Moves& moves, const Enough& enough, Solution& solution) {
   auto& times = device_.times();
-  if (before == Light::unknown || before == Light::moved) {
-    if (gather_.direct() == Direct::exact)
-      times.time("direct_light", [&] { lamps_.light(offsets(), scales(), moves); });
-    if (moves.any()) link(moves, solution);
-  }
+  const bool changed = before == Light::unknown || before == Light::moved;
+  // For the map after a move, which the next one follows soon.
+  const bool in_haste = before != Light::unknown && !settings_.bounces && enough(0);
+  if (gather_.direct() == Direct::exact && (changed || (lamps_.is_rough() && !in_haste)))
+    times.time("direct_light", [&] {
+      lamps_.light(offsets(), scales(), moves, in_haste ? LampLight::Care::rough : LampLight::Care::whole);
+    });
+  if (moves.any()) link(moves, solution);
   const progress::Work work("bounces");
   const bool settled = times.time("bounces", [&] { return converge(before, enough, solution); });
   times.time("average", [&] { finish(); });
@@ -149,13 +152,13 @@ double Rays::error_estimate() const {
   return split_half_error(irradiance_, half);
 }
 
-Shown Rays::shown() {
+Shown Rays::shown(const Adaptation& adaptation) {
   if (!presenter_) presenter_.emplace(device_, scene_, records_);
   std::vector<float> covered(irradiance_.size(), 0);
   for (std::uint32_t row = 0; row < rows_.count(); ++row)
     if (rows_[row].atlas != no_atlas_texel && links_.buried(row)) covered[rows_[row].atlas] = 1;
   presenter_->dim(scales());
-  return presenter_->show(irradiance_view(), covered);
+  return presenter_->show(irradiance_view(), adaptation, covered);
 }
 
 }  // namespace lichtveld::lightfield

@@ -22,7 +22,7 @@ class Rays final : public LightField {
   Rays(const gpu::Device& device, const scene::Scene& scene, const Settings& settings);
 
   TexelView irradiance_view() const override { return {irradiance_, settings_.size}; }
-  Shown shown() override;
+  Shown shown(const Adaptation& adaptation) override;
   gpu::Times times() const override { return device_.times().so_far() - begun_; }
 
  private:

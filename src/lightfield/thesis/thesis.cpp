@@ -73,7 +73,6 @@ bool Thesis::compute(Light, const Moves& moves, const Enough&, Solution& solutio
     ++solution.bounces;
     solution.residual = convergence.measure(irradiance());
   }
-  present();  // tone_map
   if (observer_) show_result();
   return true;
 }
@@ -115,7 +114,7 @@ void Thesis::begin(const Moves& moves) {
   geometry_texture_.find_walls(frame, geometry_, map_);
   brdf_.record(frame, map_, !lamps_);
   frame.submit_and_wait();
-  if (scales() != scene::full(geometry_.scene))
+  if (moves.dimmed || scales() != scene::full(geometry_.scene))
     put_emission(device_, map_, geometry_.scene, records_, scales());
 }
 
@@ -195,12 +194,14 @@ void Thesis::end_bounce(const Solution& solution) {
   frame.submit_and_wait();
 }
 
-void Thesis::present() {
+// tone_map
+Shown Thesis::shown(const Adaptation& adaptation) {
   gpu::Frame frame(device_, {"thesis", "present"});
   if (lamps_) brdf_.record(frame, map_);
   geometry_texture_.find_shown(frame, map_);
-  tone_map_.record(frame, map_);
+  tone_map_.record(frame, map_, adaptation);
   frame.submit_and_wait();
+  return tone_map_.shown(map_);
 }
 
 void Thesis::show_stages() {

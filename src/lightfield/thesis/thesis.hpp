@@ -22,7 +22,7 @@ class Thesis final : public LightField {
   Thesis(const gpu::Device& device, const scene::Scene& scene, const Settings& settings);
 
   TexelView irradiance_view() const override { return {device_, map_.total_irradiance}; }
-  Shown shown() override { return download_presented(device_, map_); }
+  Shown shown(const Adaptation& adaptation) override;
   void observe(StageObserver observer, std::uint32_t direction) override;
   gpu::Times times() const override { return device_.times().so_far() - begun_; }
 
@@ -48,7 +48,6 @@ class Thesis final : public LightField {
   void clear_bounce(gpu::Frame& frame) const;
   void light_by_lamps(const Moves& moves);
   void end_bounce(const Solution& solution);
-  void present();
   void show_stages();
   void show_result();
 

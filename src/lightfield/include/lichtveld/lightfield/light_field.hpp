@@ -88,8 +88,8 @@ class LightField {
   // texels, all 0 elsewhere.
   std::vector<glm::vec4> irradiance() const { return irradiance_view().on_host(); }
   virtual TexelView irradiance_view() const = 0;
-  // The same as players see it.
-  virtual Shown shown() = 0;
+  // The same as players see it, with an exposure that follows from this one's light and that of the one before.
+  virtual Shown shown(const Adaptation& adaptation = {}) = 0;
 
   // Looks at up to `pairs` pairs of directions of what is kept, those that have not been looked at since the
   // last move. Nothing once all have, before any light is known, and for engines that keep nothing. None is

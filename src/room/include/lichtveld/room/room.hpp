@@ -6,6 +6,7 @@
 #include <functional>
 #include <limits>
 #include <memory>
+#include <optional>
 
 #include "lichtveld/lightfield/light_field.hpp"
 #include "lichtveld/room/places.hpp"
@@ -18,10 +19,19 @@ namespace lichtveld::room {
 struct Map {
   lightfield::Shown shown;
   Places places;
+  scene::Scales scales = {};  // of the lights, as it shows them
+};
+
+// How fast the exposure of maps follows their light, as an eye does.
+struct Eye {
+  // Time constants where it becomes brighter, and darker [s]; 0: at once.
+  double brighter = 0.3, darker = 0.9;
+  std::optional<float> fixed = {};  // as lightfield::Adaptation::fixed
 };
 
 struct Options {
-  double rate = 30;           // most maps a second, above 0
+  double rate = 30;  // most maps a second, above 0
+  Eye eye = {};
   scene::Scales scales = {};  // of its lights at the beginning; empty: all as in the scene
   // Of the scene's movable bodies the first so many are listed in maps and placed; others stand at rest.
   std::size_t bodies = std::numeric_limits<std::size_t>::max();

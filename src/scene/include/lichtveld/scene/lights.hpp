@@ -31,6 +31,9 @@ glm::vec3 radiance_of(const Sky& sky, const glm::vec3& direction);
 glm::vec3 direction_of(const Sky& sky, std::uint32_t column, std::uint32_t row);
 float solid_angle_of(const Sky& sky, std::uint32_t row);
 
+// Of all of it, by the solid angle.
+glm::vec3 mean_radiance(const Sky& sky);
+
 // E [W m^-2] of level ground that sees nothing else.
 glm::vec3 irradiance_of(const Sky& sky);
 

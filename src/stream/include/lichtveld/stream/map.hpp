@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "lichtveld/stream/place.hpp"
@@ -17,6 +18,7 @@ struct EncodedMap {
   MapFormat format = MapFormat::png;
   std::vector<std::uint8_t> bytes;
   std::vector<Place> places = {};  // that it shows
+  std::string sky = {};            // what the sky looks like with it, "#rrggbb"; empty: there is none
 };
 
 }  // namespace lichtveld::stream

@@ -51,9 +51,9 @@ std::optional<Move> parse_move(std::string_view text);
 inline constexpr float brightest_light = 16;
 inline constexpr std::size_t most_lights = 64, light_name = 64;
 
-// {"lights":[{"name":"lamp","scale":[1,1,1]}]}, in the order in which `light` numbers them. Throws
-// std::invalid_argument for a scale that is not 0..brightest_light.
-std::string format_lights(const std::vector<Light>& lights);
+// {"lights":[{"name":"lamp","scale":[1,1,1]}],"sky":"#8fb4e8"}, in the order in which `light` numbers them;
+// without "sky" where that is empty. Throws std::invalid_argument for a scale that is not 0..brightest_light.
+std::string format_lights(const std::vector<Light>& lights, const std::string& sky = {});
 
 // Whether a client asks to be told of lights, now and whenever they change.
 bool asks_for_lights(std::string_view text);
