@@ -1,6 +1,6 @@
 #!/usr/bin/env node
 /**
- * Redraws docs/pictures: two browsers in one room, a strip of one while the other moves its cube, and what each pass
+ * Redraws docs/pictures: the furnished room in its different lights, two browsers in one room, a strip of one while the other moves its cube, and what each pass
  * makes of the Cornell room. Needs the built render
  * server and web client, a Chromium and oiiotool; `./dev pictures` sees to that and to a network in which they meet.
  *
@@ -15,7 +15,7 @@ import { tmpdir } from 'node:os';
 import { join, relative } from 'node:path';
 import { PNG } from 'pngjs';
 import { launch } from '../tests/e2e/browser.js';
-import { executable, play, root, scenePath } from '../tests/e2e/programs.js';
+import { executable, play, root, roomPath, scenePath } from '../tests/e2e/programs.js';
 
 const folder = join(root, 'docs/pictures');
 const quality = ['--size', '256', '--psf', '384', '--bounces', '3'];
@@ -26,6 +26,11 @@ const largest = 300_000;
 const gap = 12;
 /** As `serve` shows it while something moves: with the light of all bounces, each map a step on. */
 const moving = ['--size', '256', '--psf', '384'];
+/** The furnished room's, of rays. */
+const furnished = ['--size', '256', '--psf', '96'];
+/** Its front's right upper corner, and how near the cubes are when the lamp stands beside the other one [m]. */
+const roomFront = [2.6, 2.8, 2.2];
+const besideCube = 0.6;
 /** Milliseconds after which a cube that has not moved is held up by a wall, and not by a slow machine. */
 const stillMs = 1000;
 /** Metres from the left wall at which the strip's pictures are taken, and the part of the page that they show. */
@@ -34,11 +39,22 @@ const stripClip = { x: 100, y: 170, width: 400, height: 380 };
 
 // Without a note of the command line, which would hold this machine's paths.
 const oiiotool = (...args) =>
-  execFileSync('oiiotool', ['--nosoftwareattrib', ...args.map(String)], { stdio: ['ignore', 'inherit', 'inherit'] });
+  execFileSync('oiiotool', ['--nosoftwareattrib', ...args.map(String)], {
+    stdio: ['ignore', 'inherit', 'inherit'],
+  });
 const twice = ['--resize:filter=box', '200%', '-d', 'uint8'];
 const grey = ['--ch', '0,0,0', '--chnames', 'R,G,B'];
 /** Linear light to the screen's 8 bits; `exposure` maps it to 0..1. */
-const light = (exposure) => ['--ch', 'R,G,B', '--mulc', exposure, '--colorconvert', 'linear', 'sRGB', ...twice];
+const light = (exposure) => [
+  '--ch',
+  'R,G,B',
+  '--mulc',
+  exposure,
+  '--colorconvert',
+  'linear',
+  'sRGB',
+  ...twice,
+];
 
 /** Throws where all of an image is black: another set of directions has another `shownPsf`. */
 function mustShowSomething(image) {
@@ -95,17 +111,18 @@ function drawPasses() {
   }
 }
 
-/** Two players in one room. */
-async function withTwoPlayers(options, act) {
+/** So many in one room: the first two play. */
+async function withPeople(options, scene, viewports, act) {
   const afterwards = [];
   const t = { after: (task) => afterwards.push(task), diagnostic: () => {} };
   try {
-    const { url } = await play(t, options);
+    const { url } = await play(t, options, scene);
     const browser = await launch(t);
     const players = [];
-    for (const cube of [1, 2]) {
-      const player = await browser.open(url, { viewport: { width: 800, height: 600 } });
-      await player.until('a player', ({ state, role }) => state === 'live' && role?.cube === cube);
+    for (const [i, viewport] of viewports.entries()) {
+      const player = await browser.open(url, { viewport });
+      const cube = i < 2 ? i + 1 : 0;
+      await player.until('seated', ({ state, role }) => state === 'live' && role?.cube === cube);
       await player.lit(120_000);
       players.push(player);
     }
@@ -113,6 +130,80 @@ async function withTwoPlayers(options, act) {
   } finally {
     for (const task of afterwards.reverse()) await task();
   }
+}
+
+const twoOfThem = [1, 2].map(() => ({ width: 800, height: 600 }));
+const withTwoPlayers = (options, act) => withPeople(options, scenePath, twoOfThem, act);
+
+/** Pictures of one size in rows of three, as a JPEG. */
+function sheetOf(pictures, file) {
+  const work = mkdtempSync(join(tmpdir(), 'lichtveld-pictures-'));
+  try {
+    const files = pictures.map((picture, i) => {
+      writeFileSync(join(work, `${i}.png`), picture);
+      return join(work, `${i}.png`);
+    });
+    const columns = Math.min(files.length, 3);
+    // Those of a sheet are half as large.
+    const one = (file) => (files.length > 1 ? [file, '--resize', '50%'] : [file]);
+    const mosaic =
+      files.length > 1 ? [`--mosaic:pad=${gap / 2}`, `${columns}x${Math.ceil(files.length / columns)}`] : [];
+    const jpeg = ['--ch', 'R,G,B', '--compression', 'jpeg:90', '-o', join(folder, file)];
+    oiiotool(...files.flatMap(one), ...mosaic, ...jpeg);
+  } finally {
+    rmSync(work, { recursive: true });
+  }
+}
+
+/** The furnished room as a watcher sees it, while a player switches its lights and carries one of them. */
+async function drawFurnishedRoom() {
+  const small = { width: 320, height: 240 };
+  const viewports = [small, small, { width: 1200, height: 675 }];
+  await withPeople(furnished, roomPath, viewports, async ([player, , watcher]) => {
+    await watcher.page.evaluate(() => {
+      for (const element of document.querySelectorAll('header, section, nav, #lights'))
+        element.style.setProperty('display', 'none', 'important');
+    });
+    const clip = await watcher.page.evaluate(([x, y, z]) => {
+      const [a, b] = [window.lichtveld.project(-x, y, z), window.lichtveld.project(x, 0, z)];
+      return { x: a.x, y: a.y, width: b.x - a.x, height: b.y - a.y };
+    }, roomFront);
+    const shot = async () => {
+      await watcher.settledMap(3000);
+      return watcher.page.screenshot({ clip });
+    };
+    const lights = await player.page.evaluate(() => window.lichtveld.lights.map(({ name }) => name));
+    const only = async (...on) => {
+      for (const [i, name] of lights.entries())
+        await player.page.evaluate(
+          ([index, pressed]) => {
+            const button = document.querySelectorAll('#light-list button')[index];
+            if ((button.getAttribute('aria-pressed') === 'true') !== pressed) button.click();
+          },
+          [i, on.includes(name)],
+        );
+      const isSo = ({ lights: now }) => now.every(({ name, scale }) => on.includes(name) === scale[0] > 0);
+      await watcher.until(`lit by ${on.join(', ')}`, isSo);
+      return shot();
+    };
+    sheetOf([await shot()], 'room.jpg');
+    const pictures = [
+      await only('sun', 'sky'),
+      await only('pendant', 'floor lamp', 'table lamp'),
+      await only('pendant'),
+      await only('floor lamp'),
+      await only('table lamp'),
+    ];
+    await player.page.keyboard.down('ArrowRight');
+    await watcher.until(
+      'beside the other cube',
+      ({ places }) => places[0].x > places[1].x - besideCube,
+      60_000,
+    );
+    await player.page.keyboard.up('ArrowRight');
+    pictures.push(await shot());
+    sheetOf(pictures, 'room-lights.jpg');
+  });
 }
 
 /** Pictures of the same height beside each other. */
@@ -181,21 +272,24 @@ async function drawTwoBrowsers() {
 }
 
 mkdirSync(folder, { recursive: true });
+await drawFurnishedRoom();
 drawPasses();
 await drawTwoBrowsers();
 await drawMovingCube();
 const names = [
-  'geometry_texture',
-  'emit_radiance',
-  'stencil_routing',
-  'blend',
-  'brdf',
-  'tone_map',
-  'two-browsers',
-  'moving-cube',
+  'room.jpg',
+  'room-lights.jpg',
+  'geometry_texture.png',
+  'emit_radiance.png',
+  'stencil_routing.png',
+  'blend.png',
+  'brdf.png',
+  'tone_map.png',
+  'two-browsers.png',
+  'moving-cube.png',
 ];
 for (const name of names) {
-  const path = join(folder, `${name}.png`);
+  const path = join(folder, name);
   const { size } = statSync(path);
   console.log(`${relative(root, path)}: ${Math.ceil(size / 1000)} kB`);
   if (size > largest) throw new Error(`${path} has ${size} bytes, more than ${largest}: make it smaller`);

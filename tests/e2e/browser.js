@@ -97,11 +97,11 @@ export class Player {
     page.on('console', (message) => message.type() === 'error' && this.errors.push(message.text()));
   }
 
-  /** What the page knows: state, role, places, mapsReceived, error. */
+  /** What the page knows: state, role, places, lights, mapsReceived, error. */
   knows() {
     return this.page.evaluate(() => {
-      const { state, role, places, mapsReceived, mapsRefused, error } = window.lichtveld;
-      return { state, role, places, mapsReceived, mapsRefused, error };
+      const { state, role, places, lights, mapsReceived, mapsRefused, error } = window.lichtveld;
+      return { state, role, places, lights, mapsReceived, mapsRefused, error };
     });
   }
 

@@ -8,6 +8,7 @@ import { fileURLToPath } from 'node:url';
 
 export const root = fileURLToPath(new URL('../..', import.meta.url));
 export const scenePath = join(root, 'assets/cornell.glb');
+export const roomPath = join(root, 'assets/room.glb');
 export const executable = resolve(process.env.LICHTVELD || join(root, 'build/release/lichtveld'));
 
 /** Small, for speed: what is tested is the way of the light, not its beauty. Fewer PSFs show no shadow on the floor. */

@@ -26,7 +26,7 @@ test('in a bright room, too, light settles within three maps of the last step', 
   t.after(() => rmSync(folder, { recursive: true }));
   const scene = join(folder, 'bright.glb');
   new SceneFile(scenePath).writeWithAlbedo(scene, albedo);
-  const { url } = await play(t, ['--size', '64', '--psf', '96'], scene);
+  const { url } = await play(t, ['--size', '64', '--psf', '96', '--adapt', '0,0'], scene);
   const player = await (await launch(t)).open(url);
   await player.lit();
   await player.settledMap();
