@@ -111,9 +111,12 @@ void add_bake(CLI::App& application) {
                    "Write what each light that switches gives, and all others together, there, as NAME.exr: a "
                    "program can scale and add them")
       ->type_name("DIR");
-  command->add_flag("--live", options->live,
-                    "First compute with all nodes at rest and all lights full, then apply each move and "
-                    "--light, as serve does");
+  auto* live =
+      command->add_flag("--live", options->live,
+                        "First compute with all nodes at rest and all lights full, then apply each move and "
+                        "--light, as serve does");
+  // Its bounces are counted from the start.
+  live->excludes(command->get_option("--lights-apart"));
   command->add_option("--dump", options->dump, "Write the output of every pass there, as EXR")
       ->type_name("DIR");
   command->add_option("--dump-psf", options->dump_psf, "The direction whose A-buffer and irradiance are dumped")

@@ -44,18 +44,18 @@ std::uint32_t find_body(const Scene& scene, const std::string& node) {
 }
 
 std::vector<std::uint32_t> find_lights(const Scene& scene, const std::string& node) {
-  std::vector<std::uint32_t> found;
-  for (std::uint32_t i = 1; i < scene.lights.size(); ++i)
-    if (scene.lights[i].node == node) found.push_back(i);
-  if (!found.empty()) return found;
   std::set<std::string> names;
-  for (std::size_t i = 1; i < scene.lights.size(); ++i) names.insert(scene.lights[i].node);
+  std::set<std::uint32_t> found;
+  const auto add = [&](std::uint32_t light, const std::string& own_name) {
+    const auto& name = light > 0 ? scene.lights[light].node : own_name;
+    names.insert(name);
+    if (light > 0 && name == node) found.insert(light);
+  };
   for (const auto& surface : scene.surfaces)
-    if (surface.light == 0 && scene.materials[surface.material].emission != glm::vec3(0))
-      names.insert(surface.node);
-  for (const auto& light : scene.punctual)
-    if (light.light == 0) names.insert(light.node);
-  if (scene.sky) names.insert(sky_name);
+    if (scene.materials[surface.material].emission != glm::vec3(0)) add(surface.light, surface.node);
+  for (const auto& light : scene.punctual) add(light.light, light.node);
+  if (scene.sky) add(scene.sky->light, sky_name);
+  if (!found.empty()) return {found.begin(), found.end()};
   std::string list;
   for (const auto& name : names) {
     list += (list.empty() ? "" : ", ") + name;
