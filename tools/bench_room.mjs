@@ -6,19 +6,23 @@
  * core), and of the render server's stages. Needs the built render server and web client and a Chromium; `./dev
  * bench-room` sees to that and to a network in which they meet.
  *
- *   tests/e2e/own_network.sh node tools/bench_room.mjs [--seconds 10] [--players 2] [-- SERVE OPTIONS]
+ *   tests/e2e/own_network.sh node tools/bench_room.mjs [--seconds 10] [--players 2] [--scene assets/room.glb] [-- SERVE OPTIONS]
  */
 import { readFileSync, readdirSync } from 'node:fs';
 import { setTimeout as sleep } from 'node:timers/promises';
 import { parseArgs } from 'node:util';
 import { launch } from '../tests/e2e/browser.js';
-import { play } from '../tests/e2e/programs.js';
+import { play, roomPath } from '../tests/e2e/programs.js';
 
 const split = process.argv.indexOf('--');
 const serveOptions = split < 0 ? [] : process.argv.slice(split + 1);
 const { values } = parseArgs({
   args: process.argv.slice(2, split < 0 ? undefined : split),
-  options: { seconds: { type: 'string', default: '10' }, players: { type: 'string', default: '2' } },
+  options: {
+    seconds: { type: 'string', default: '10' },
+    players: { type: 'string', default: '2' },
+    scene: { type: 'string', default: roomPath },
+  },
 });
 const seconds = Number(values.seconds);
 const count = Number(values.players);
@@ -59,7 +63,9 @@ function processorTimes() {
 async function stages(url) {
   const text = await (await fetch(`${url}/metrics`)).text();
   const of = {};
-  for (const [, what, name, value] of text.matchAll(/^lichtveld_server_stage_(\w+)_total\{stage="(\w+)"\} (.+)$/gm))
+  for (const [, what, name, value] of text.matchAll(
+    /^lichtveld_server_stage_(\w+)_total\{stage="(\w+)"\} (.+)$/gm,
+  ))
     (of[name] ??= { runs: 0, seconds: 0 })[what] = Number(value);
   return of;
 }
@@ -70,7 +76,11 @@ async function measure(what, { url, players }, act) {
   const [work, maps] = [await stages(url), await received(players)];
   const [processors, start] = [processorTimes(), performance.now()];
   await act();
-  const [after, mapsAfter, took] = [processorTimes(), await received(players), (performance.now() - start) / 1000];
+  const [after, mapsAfter, took] = [
+    processorTimes(),
+    await received(players),
+    (performance.now() - start) / 1000,
+  ];
   console.log(`${what}, ${took.toFixed(1)} s`);
   for (const [n, now] of mapsAfter.entries())
     console.log(`  player ${n + 1}: ${((now - maps[n]) / took).toFixed(1)} maps a second`);
@@ -88,7 +98,11 @@ async function measure(what, { url, players }, act) {
 /** Holds an arrow key, and turns round before a wall comes. */
 async function hold(player, end) {
   const { keyboard } = player.page;
-  for (let key = 'ArrowLeft'; performance.now() < end; key = key === 'ArrowLeft' ? 'ArrowRight' : 'ArrowLeft') {
+  for (
+    let key = 'ArrowLeft';
+    performance.now() < end;
+    key = key === 'ArrowLeft' ? 'ArrowRight' : 'ArrowLeft'
+  ) {
     await keyboard.down(key);
     await sleep(turnMs);
     await keyboard.up(key);
@@ -96,9 +110,12 @@ async function hold(player, end) {
 }
 
 const afterwards = [];
-const t = { after: (task) => afterwards.push(task), diagnostic: (text) => process.env.VERBOSE && console.error(text) };
+const t = {
+  after: (task) => afterwards.push(task),
+  diagnostic: (text) => process.env.VERBOSE && console.error(text),
+};
 try {
-  const { url } = await play(t, serveOptions);
+  const { url } = await play(t, serveOptions, values.scene);
   const players = [];
   for (let n = 0; n < count; ++n) {
     const browser = await launch(t);
