@@ -163,8 +163,8 @@ def disc(radius, sides, at, up, detail=1.0):
     return [patch]
 
 
-def ball(radius, at, steps=16, detail=1.0, squash=1.0):
-    profile = [(radius * math.sin(math.pi * j / steps) + 1e-4, -squash * radius * math.cos(math.pi * j / steps))
+def ball(radius, at, steps=16, detail=1.0):
+    profile = [(radius * math.sin(math.pi * j / steps) + 1e-4, -radius * math.cos(math.pi * j / steps))
                for j in range(steps + 1)]
     return lathe(profile, 2 * steps, at, detail)
 
@@ -377,8 +377,8 @@ def window(room, white, curtain):
             heights = [0.06 + (2.46 - 0.06) * j / 8 for j in range(9)]
             sides.append(Patch([[(p[0], h, p[2]) for p in row] for h in heights], detail=0.8))
         room.add(name, sides, curtain)
-    rod = [patch for patch in cylinder(0.014, -1.5, 1.5, 12)]
-    turn = [[(p[0], p[2], p[1]) for p in row] for row in rod[0].points]
+    rod = cylinder(0.014, -1.5, 1.5, 12)[0]
+    turn = [[(p[0], p[2], p[1]) for p in row] for row in rod.points]
     room.add("curtain rod", [Patch([row[::-1] for row in turn]).moved((-X + 0.10, 2.48, -0.35))], room.brass)
 
 
@@ -410,7 +410,7 @@ def table(room, wood):
     room.add("oranges", moved(fruit, at), room.orange)
     mug = cylinder(0.04, 0, 0.09, 20, bottom=True, top=False) + lathe([(0.034, 0.09), (0.034, 0.012), (0.002, 0.01)], 20)
     room.add("mug", moved(mug, add(at, (-0.32, 0.752, 0.16))), room.blue)
-    for number, (x, z, angle) in enumerate(((-0.30, 0.80, 0.25), (0.62, -1.42, math.pi + 0.1))):
+    for number, (x, z, angle) in enumerate(((-0.30, 0.80, 0.25), (0.05, -0.72, math.pi + 0.1))):
         seat = soft_box((-0.2, 0.43, -0.2), (0.2, 0.47, 0.2), 0.018, 3)
         for lx in (-0.17, 0.17):
             for lz in (-0.17, 0.17):
@@ -419,8 +419,7 @@ def table(room, wood):
             seat += box((lx - 0.02, 0.469, 0.15), (lx + 0.02, 0.9, 0.19), 0.8)
         for y in (0.62, 0.80):
             seat += box((-0.15, y, 0.155), (0.15, y + 0.08, 0.18))
-        room.add("chair %d" % (number + 1), moved(seat, add(at, (x if number == 0 else 0.05, 0, z if number == 0 else -0.72)),
-                                                  angle), wood)
+        room.add("chair %d" % (number + 1), moved(seat, add(at, (x, 0, z)), angle), wood)
 
 
 def pendant(room, dark):
@@ -513,7 +512,7 @@ def plant(room):
                 lift = 0.004 if front else -0.004
                 row = [(out - lift, up + 0.27 + lift + 0.25 * abs(s) * half, s * half) for s in (-1, -0.5, 0, 0.5, 1)]
                 grid.append(row if not front else row[::-1])
-            leaves += [patch.turned(turn) for patch in [Patch(grid, detail=0.6)]]
+            leaves.append(Patch(grid, detail=0.6).turned(turn))
     room.add("plant", moved(leaves, at), room.leaf)
 
 

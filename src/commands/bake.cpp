@@ -4,11 +4,13 @@
 #include <spdlog/spdlog.h>
 
 #include <cmath>
+#include <utility>
 
 #include "command_list.hpp"
 #include "lichtveld/files/output.hpp"
 #include "lichtveld/progress/progress.hpp"
 #include "lichtveld/scene/atlas.hpp"
+#include "lichtveld/scene/lights.hpp"
 #include "lichtveld/stream/encoder.hpp"
 
 namespace lichtveld::commands {
@@ -67,6 +69,11 @@ void bake(const BakeOptions& options) {
   const progress::Work work("bake");
   BakeJob job{.scene = load(options.scene, options.lights), .moves = {}, .scales = {}};
   job.scales = scales_of(job.scene, options.lights);
+  // Without --live lights are from the start as they are asked for, for methods that know none, too.
+  if (!options.live) {
+    job.scene = scene::dimmed(std::move(job.scene), job.scales);
+    job.scales = scene::full(job.scene);
+  }
   scene::check_atlas(job.scene, options.settings.size);
   for (const auto& text : options.moves) job.moves.push_back(parse_move(text, job.scene));
 

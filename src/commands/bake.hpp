@@ -36,7 +36,7 @@ struct BakeJob {
     glm::vec3 by;  // [m]
   };
   std::vector<NodeMove> moves;
-  scene::Scales scales;  // of its lights, by options.lights
+  scene::Scales scales;  // of its lights, which --live comes to after the moves
 
   scene::Offsets at_rest() const { return scene::Offsets(scene.bodies.size(), glm::vec3(0)); }
   scene::Offsets moved() const;  // every move made

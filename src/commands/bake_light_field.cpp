@@ -9,7 +9,6 @@
 #include "bake.hpp"
 #include "lichtveld/files/output.hpp"
 #include "lichtveld/lightfield/engine.hpp"
-#include "lichtveld/scene/lights.hpp"
 #include "report.hpp"
 
 namespace lichtveld::commands {
@@ -67,7 +66,7 @@ std::vector<Baked::OfLight> bake_apart(const lightfield::Engine& engine, const g
   std::set<std::string> taken;
   for (std::size_t i = 0; i < job.scene.lights.size(); ++i) {
     scene::Scales scales(job.scene.lights.size(), glm::vec3(0));
-    scales[i] = job.scales[i];
+    scales[i] = glm::vec3(1);
     light->dim(scales);
     light->settle();
     apart.push_back({file_of(i == 0 ? "rest" : job.scene.lights[i].node, taken), light->irradiance()});
@@ -113,11 +112,9 @@ Baked bake_light_field(const BakeOptions& options, const BakeJob& job) {
   const auto start = std::chrono::steady_clock::now();
   auto total = std::make_unique<gpu::TimeLedger::Stage>(device.times(), "rest");
   auto settings = options.settings;
-  // Without --live lights are from the start as they are asked for, for methods that know none, too.
-  const auto scene = options.live ? job.scene : scene::dimmed(job.scene, job.scales);
-  const auto& engine = engine_of(options.method, device, scene, settings);
-  if (options.error) choose_quality(options, engine, device, scene, settings);
-  const auto light = device.times().time("set_up", [&] { return engine.make(device, scene, settings); });
+  const auto& engine = engine_of(options.method, device, job.scene, settings);
+  if (options.error) choose_quality(options, engine, device, job.scene, settings);
+  const auto light = device.times().time("set_up", [&] { return engine.make(device, job.scene, settings); });
   if (options.live) live(*light, job, capture);
   if (!options.dump.empty()) light->observe(dump_into(options.dump), options.dump_psf);
   light->place(job.moved());

@@ -6,7 +6,6 @@
 #include "bake.hpp"
 #include "lichtveld/lightfield/presenter.hpp"
 #include "lichtveld/reference/error.hpp"
-#include "lichtveld/scene/lights.hpp"
 
 namespace lichtveld::commands {
 
@@ -15,15 +14,14 @@ Baked bake_reference(const BakeOptions& options, const BakeJob& job) {
                                      .bounces = options.settings.bounces,
                                      .spp = options.spp,
                                      .seed = options.settings.seed};
-  const auto scene = scene::dimmed(job.scene, job.scales);
   const auto start = std::chrono::steady_clock::now();
-  auto traced = reference::trace(scene, job.moved(), settings);
+  auto traced = reference::trace(job.scene, job.moved(), settings);
   const std::chrono::duration<double, std::milli> total = std::chrono::steady_clock::now() - start;
 
   Baked baked{.size = settings.size, .irradiance = traced.texels, .shown = {}, .apart = {}, .report = {}};
   if (!options.png.empty()) {
     const gpu::Device device(options.device);
-    baked.shown = lightfield::present(device, scene, {traced.texels, options.settings.size});
+    baked.shown = lightfield::present(device, job.scene, {traced.texels, options.settings.size});
     check_validation(device);
   }
   baked.report = {

@@ -24,20 +24,19 @@ Scales full(const Scene& scene) {
   return Scales(scene.lights.size(), glm::vec3(1));
 }
 
-Scene dimmed(const Scene& scene, const Scales& scales) {
-  Scene result = scene;
+Scene dimmed(Scene scene, const Scales& scales) {
   // Surfaces of other lights may share a material.
-  for (auto& surface : result.surfaces) {
-    Material material = result.materials[surface.material];
+  for (auto& surface : scene.surfaces) {
+    Material material = scene.materials[surface.material];
     if (scales[surface.light] == glm::vec3(1) || material.emission == glm::vec3(0)) continue;
     material.emission *= scales[surface.light];
-    surface.material = static_cast<std::uint32_t>(result.materials.size());
-    result.materials.push_back(std::move(material));
+    surface.material = static_cast<std::uint32_t>(scene.materials.size());
+    scene.materials.push_back(std::move(material));
   }
-  for (auto& light : result.punctual) light.intensity *= scales[light.light];
-  if (result.sky)
-    for (auto& radiance : result.sky->radiance) radiance *= scales[result.sky->light];
-  return result;
+  for (auto& light : scene.punctual) light.intensity *= scales[light.light];
+  if (scene.sky)
+    for (auto& radiance : scene.sky->radiance) radiance *= scales[scene.sky->light];
+  return scene;
 }
 
 glm::vec3 radiance_of(const Sky& sky, const glm::vec3& direction) {

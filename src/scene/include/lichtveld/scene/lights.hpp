@@ -17,7 +17,7 @@ bool has_light(const Scene& scene);
 Scales full(const Scene& scene);
 
 // The scene with its lights scaled so for good.
-Scene dimmed(const Scene& scene, const Scales& scales);
+Scene dimmed(Scene scene, const Scales& scales);
 
 // E [W m^-2] that a punctual light brings to a place without anything in between, its body shifted by `offset`
 // [m]; nothing arrives from below `normal` or `face` (unit). Spots fade between their cones and all fade
