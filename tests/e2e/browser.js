@@ -135,6 +135,17 @@ export class Player {
     return { width, height, data: Uint8Array.from(data) };
   }
 
+  /** Waits until `accepts(map())`. */
+  async untilMap(what, accepts, timeoutMs = 20_000) {
+    const end = Date.now() + timeoutMs;
+    for (;;) {
+      const map = await this.map();
+      if (accepts(map)) return map;
+      if (Date.now() > end) throw new Error(`waited in vain for a light map in which ${what}`);
+      await sleep(200);
+    }
+  }
+
   /** The light map once it has not changed for some time. */
   async settledMap(quietMs = 1000) {
     let last = await this.map();
