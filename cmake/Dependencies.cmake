@@ -3,7 +3,7 @@ find_package(Threads REQUIRED)
 find_package(PkgConfig REQUIRED)
 find_package(Vulkan REQUIRED)
 find_package(OpenSSL REQUIRED)
-find_package(Boost 1.74 REQUIRED)  # headers only: Asio and Beast
+find_package(Boost 1.74 REQUIRED)  # headers only
 find_package(glm REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(CLI11 REQUIRED)
@@ -20,6 +20,7 @@ pkg_check_modules(OIIO REQUIRED IMPORTED_TARGET OpenImageIO)
 # Its own package files are unequal between releases, and the C library is the part that keeps its interface.
 pkg_check_modules(SPIRV_CROSS REQUIRED IMPORTED_TARGET spirv-cross-c-shared)
 find_path(TINYGLTF_INCLUDE_DIR tiny_gltf.h REQUIRED)
+find_path(STB_INCLUDE_DIR stb_rect_pack.h PATH_SUFFIXES stb REQUIRED)
 # For --capture, which says so where the header was missing. The library itself is loaded when it is asked for.
 find_path(RENDERDOC_INCLUDE_DIR renderdoc_app.h)
 find_program(GLSLANG glslangValidator REQUIRED)

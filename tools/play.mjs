@@ -18,7 +18,7 @@
  * LICHTVELD names another render server than build/release/lichtveld. Exit codes: 0 ended by a signal, 2 bad usage or
  * input (a busy port, say), else the code of the program that died.
  */
-import { execFileSync } from 'node:child_process';
+import { execFileSync, spawnSync } from 'node:child_process';
 import { randomBytes } from 'node:crypto';
 import { lookup } from 'node:dns/promises';
 import { existsSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
@@ -164,6 +164,18 @@ function showLinks(secretFile, url) {
   for (const role of ['player', 'watcher']) process.stderr.write(`  ${role}  ${link(role)}\n`);
 }
 
+/** The scene as one file that browsers draw, with an atlas for its light map: made where its own cannot be used. */
+function withAtlas(scene, { executable, serveOptions }, folder) {
+  const made = join(folder, 'scene.glb');
+  const at = serveOptions.indexOf('--size');
+  const size = at < 0 ? [] : ['--size', serveOptions[at + 1] ?? ''];
+  const { status, signal } = spawnSync(executable, ['unwrap', scene, '--out', made, ...size], {
+    stdio: ['ignore', 2, 2],
+  });
+  if (status !== 0) throw new Error(`the scene cannot be used${signal ? ` (unwrap ended by ${signal})` : ''}`);
+  return made;
+}
+
 let options;
 try {
   options = await readOptions();
@@ -178,14 +190,21 @@ const company = new Company(say, removeFiles);
 process.on('exit', removeFiles);
 for (const signal of ['SIGINT', 'SIGTERM', 'SIGHUP']) process.on(signal, () => company.finish(0));
 
-const { host, address, port, scene, executable, serveOptions, seenFromOutside } = options;
+const { host, address, port, executable, serveOptions, seenFromOutside } = options;
+let scene;
+try {
+  scene = withAtlas(options.scene, options, folder);
+} catch (error) {
+  say(error.message);
+  process.exit(2);
+}
 const token = writeSecret(folder, 'token').path;
 const scheme = options['tls-cert'] ? 's' : '';
 // A certificate is for a name; without one the machine reaches itself by its own address.
 const authority = `${scheme ? options.name[0] : urlHost(host)}:${port}`;
 const client = join(root, 'web-client/dist');
 const signalingArgs = ['--host', address, '--port', port, '--token-file', token, '--client', client];
-signalingArgs.push('--scene', resolve(scene), ...passedOn(options));
+signalingArgs.push('--scene', scene, ...passedOn(options));
 if (!isIP(host) && !options.name?.includes(host)) signalingArgs.push('--name', host);
 
 let joinSecret = options['join-secret-file'];
@@ -208,7 +227,7 @@ await new Promise((listening) => {
   });
 });
 
-const serveArgs = ['--scene', resolve(scene), '--signaling', `ws${scheme}://${authority}/server`];
+const serveArgs = ['--scene', scene, '--signaling', `ws${scheme}://${authority}/server`];
 serveArgs.push('--token-file', token, '--bind', address);
 if (seenFromOutside && !serveOptions.includes('--udp-port')) serveArgs.push('--udp-port', port);
 if (seenFromOutside && !seenFromOutside.ours) serveArgs.push('--public-ip', seenFromOutside.address);

@@ -67,7 +67,10 @@ void bake(const BakeOptions& options) {
     throw UsageError("--dump-psf " + std::to_string(options.dump_psf) + ": the directions are numbered 0.." +
                      std::to_string(options.settings.psf - 1));
   const progress::Work work("bake");
-  BakeJob job{.scene = load(options.scene, options.lights), .moves = {}, .scales = {}};
+  BakeJob job{
+      .scene = load(options.scene, options.lights, {.size = options.settings.size, .keep_uv = options.keep_uv}),
+      .moves = {},
+      .scales = {}};
   job.scales = scales_of(job.scene, options.lights);
   // Without --live lights are from the start as they are asked for, for methods that know none, too.
   if (!options.live) {
@@ -113,6 +116,7 @@ void add_bake(CLI::App& application) {
       ->type_name("NODE=dx,dy,dz")
       ->allow_extra_args(false);
   add_light_options(*command, options->lights);
+  add_keep_uv_option(*command, options->keep_uv);
   command
       ->add_option("--lights-apart", options->lights_apart,
                    "Write what each light that switches gives, and all others together, there, as NAME.exr: a "

@@ -16,6 +16,7 @@ namespace lichtveld::commands {
 struct BakeOptions {
   std::string scene, out, png, report, dump, lights_apart;
   LightOptions lights;
+  bool keep_uv = false;
   std::uint32_t dump_psf = 0;
   std::vector<std::string> moves;
   bool live = false;

@@ -9,5 +9,6 @@ void add_bake(CLI::App& application);
 void add_bench(CLI::App& application);
 void add_info(CLI::App& application);
 void add_serve(CLI::App& application);
+void add_unwrap(CLI::App& application);
 
 }  // namespace lichtveld::commands

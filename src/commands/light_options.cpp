@@ -55,10 +55,11 @@ void add_light_options(CLI::App& command, LightOptions& options) {
       ->capture_default_str();
 }
 
-scene::Scene load(const std::string& file, const LightOptions& options) {
+scene::Scene load(const std::string& file, const LightOptions& options, const scene::UnwrapOptions& unwrap) {
   if (!(options.lumens_per_watt > 0 && std::isfinite(options.lumens_per_watt)))
     throw UsageError("--lumens-per-watt: a number above 0, as 683");
-  scene::LoadOptions load{.sky = options.sky, .lights = {}, .lumens_per_watt = options.lumens_per_watt};
+  scene::LoadOptions load{
+      .sky = options.sky, .lights = {}, .lumens_per_watt = options.lumens_per_watt, .unwrap = unwrap};
   for (const auto& text : options.dimmed) load.lights.push_back(parse(text).name);
   return scene::load(file, load);
 }

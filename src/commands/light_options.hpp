@@ -19,7 +19,7 @@ struct LightOptions {
 void add_light_options(CLI::App& command, LightOptions& options);
 
 // Throws UsageError for what cannot be read, and as scene::load.
-scene::Scene load(const std::string& file, const LightOptions& options);
+scene::Scene load(const std::string& file, const LightOptions& options, const scene::UnwrapOptions& unwrap);
 
 // By --light; 1 for all others. Throws UsageError, and SceneError for a light that is not there.
 scene::Scales scales_of(const scene::Scene& scene, const LightOptions& options);

@@ -60,6 +60,18 @@ const std::vector<OptionOfMethods> options_of_methods = {
 
 }  // namespace
 
+void add_keep_uv_option(CLI::App& command, bool& keep_uv) {
+  command.add_flag("--keep-uv", keep_uv,
+                   "Refuse a scene whose TEXCOORD_1 is missing or cannot be used, instead of unwrapping it");
+}
+
+void check(const scene::UnwrapOptions& options) {
+  if (options.size < 16 || options.size > 4096)
+    throw UsageError("--size " + std::to_string(options.size) + ": texels a side, 16..4096");
+  if (!(options.texels_per_metre >= 0 && options.texels_per_metre <= 1e6))
+    throw UsageError("--texels-per-metre: a number above 0, as in 20");
+}
+
 void add_device_options(CLI::App& command, gpu::DeviceOptions& options) {
   command
       .add_option(

@@ -27,6 +27,12 @@ void add_device_options(CLI::App& command, gpu::DeviceOptions& options);
 // Throws std::runtime_error if the validation layers complained: a programmer's error must not pass unseen.
 void check_validation(const gpu::Device& device);
 
+// --keep-uv.
+void add_keep_uv_option(CLI::App& command, bool& keep_uv);
+
+// Throws UsageError for sizes and densities that no atlas has.
+void check(const scene::UnwrapOptions& options);
+
 struct CaptureOptions {
   std::string file;                    // empty: no capture
   std::optional<std::uint32_t> after;  // updates before the one that is captured

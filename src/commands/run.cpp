@@ -58,6 +58,7 @@ int run(int argc, char** argv) {
   application.set_help_all_flag("--help-all", "The help of every command");
   add_bake(application);
   add_serve(application);
+  add_unwrap(application);
   add_bench(application);
   add_info(application);
   const ProgressShown shown;

@@ -39,6 +39,7 @@ constexpr std::size_t cubes_of_players = 2;  // as stream's protocol has it
 
 struct ServeOptions {
   std::string scene, token_file;
+  bool keep_uv = false;
   LightOptions lights;
   room::Eye eye;
   stream::ServerOptions stream;  // what the command line says of it
@@ -191,10 +192,17 @@ void serve(ServeOptions options) {
   stream::check_addresses(options.stream);
   std::stop_source stop;
   const StopSignals signals([&] { stop.request_stop(); });
-  const auto scene = load(options.scene, options.lights);
+  const auto scene =
+      load(options.scene, options.lights, {.size = options.settings.size, .keep_uv = options.keep_uv});
   auto scales = scales_of(scene, options.lights);
   options.stream.token = read_token(options.token_file);
-  options.stream.scene_hash = files::sha256_of_file(options.scene);
+  options.stream.scene_hash =
+      scene.unwrapped.empty() ? files::sha256_of_file(options.scene) : files::sha256_of(scene.unwrapped);
+  if (!scene.unwrapped.empty())
+    spdlog::warn(
+        "{}: browsers need the file that was made of it: give signaling what `lichtveld unwrap --size {}` "
+        "writes",
+        options.scene, options.settings.size);
   auto capture = make_capture(options.capture, 0);
   const gpu::Device device(options.device);
   const auto& engine = engine_of(options.method, device, scene, options.settings);
@@ -309,6 +317,7 @@ void add_serve(CLI::App& application) {
       "The address at which this machine is reached from outside, where a 1:1 NAT stands before it");
   command->add_option("--rate", options->rate, "Most light maps a second")->capture_default_str();
   add_light_options(*command, options->lights);
+  add_keep_uv_option(*command, options->keep_uv);
   add_eye_options(*command, options->eye);
   add_quality_options(*command, options->settings);
   command->get_option("--size")->default_str(

@@ -17,7 +17,25 @@ namespace {
   throw std::runtime_error("cannot hash " + file.string() + ": " + why);
 }
 
+std::string hex_of(std::span<const unsigned char> digest) {
+  constexpr char digits[] = "0123456789abcdef";
+  std::string hex;
+  for (const unsigned char byte : digest) {
+    hex += digits[byte >> 4];
+    hex += digits[byte & 15];
+  }
+  return hex;
+}
+
 }  // namespace
+
+std::string sha256_of(std::span<const std::uint8_t> bytes) {
+  std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
+  unsigned int length = 0;
+  if (EVP_Digest(bytes.data(), bytes.size(), digest.data(), &length, EVP_sha256(), nullptr) != 1)
+    throw std::runtime_error("OpenSSL's SHA-256 failed");
+  return hex_of({digest.data(), length});
+}
 
 std::string sha256_of_file(const std::filesystem::path& file) {
   // A folder opens as a stream on Linux and only fails when it is read, with a message that helps nobody.
@@ -41,13 +59,7 @@ std::string sha256_of_file(const std::filesystem::path& file) {
   std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
   unsigned int length = 0;
   if (EVP_DigestFinal_ex(context.get(), digest.data(), &length) != 1) fail(file, "OpenSSL's SHA-256 failed");
-  constexpr char digits[] = "0123456789abcdef";
-  std::string hex;
-  for (unsigned int i = 0; i < length; ++i) {
-    hex += digits[digest[i] >> 4];
-    hex += digits[digest[i] & 15];
-  }
-  return hex;
+  return hex_of({digest.data(), length});
 }
 
 }  // namespace lichtveld::files

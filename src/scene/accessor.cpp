@@ -59,6 +59,12 @@ Accessor::Accessor(const tinygltf::Model& model, int index, std::string what) : 
   normalised_ = accessor.normalized;
 }
 
+std::size_t Accessor::element_bytes() const {
+  return static_cast<std::size_t>(
+      tinygltf::GetComponentSizeInBytes(static_cast<std::uint32_t>(component_type_)) *
+      tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(type_)));
+}
+
 void Accessor::require_vec3() const {
   if (type_ != TINYGLTF_TYPE_VEC3 || component_type_ != TINYGLTF_COMPONENT_TYPE_FLOAT) {
     throw SceneError(what_ + ": expected VEC3 of float");

@@ -27,6 +27,10 @@ class Accessor {
   glm::vec2 vec2(std::size_t i) const { return {real(i, 0), real(i, 1)}; }
   std::uint32_t index(std::size_t i) const { return whole(i, 0); }
 
+  // Element i < count() as it lies in the file.
+  const unsigned char* element(std::size_t i) const { return data_ + i * stride_; }
+  std::size_t element_bytes() const;
+
  private:
   float real(std::size_t i, int component) const;
   std::uint32_t whole(std::size_t i, int component) const;

@@ -43,6 +43,10 @@ std::span<const std::uint8_t> json_chunk(std::span<const std::uint8_t> bytes) {
   return bytes.subspan(20, little_endian(bytes, 12));
 }
 
+bool is_binary(std::span<const std::uint8_t> bytes) {
+  return bytes.size() >= 4 && std::memcmp(bytes.data(), "glTF", 4) == 0;
+}
+
 json parse(std::span<const std::uint8_t> text) {
   if (text.size() > max_json_bytes) throw SceneError("its JSON is larger than 64 MiB");
   const auto limit_nesting = [](int depth, json::parse_event_t, json&) {
@@ -113,9 +117,13 @@ void check_extensions(const json& root) {
 
 }  // namespace
 
+json parse_json(std::span<const std::uint8_t> bytes) {
+  return parse(is_binary(bytes) ? json_chunk(bytes) : bytes);
+}
+
 void check_container(std::span<const std::uint8_t> bytes) {
-  const bool binary = bytes.size() >= 4 && std::memcmp(bytes.data(), "glTF", 4) == 0;
-  const json root = parse(binary ? json_chunk(bytes) : bytes);
+  const bool binary = is_binary(bytes);
+  const json root = parse_json(bytes);
   check_extensions(root);
 
   const json& buffers = list(root, "buffers");

@@ -13,9 +13,6 @@
 namespace lichtveld::scene {
 namespace {
 
-// 64 triangles a texel of a 256 x 256 atlas, and 1 GB at worst: more is a mistake.
-constexpr std::size_t max_triangles = std::size_t{1} << 22;
-
 // Scene::bodies and lights.
 Owners find_owners(const tinygltf::Model& model, const std::vector<PlacedNode>& nodes, Scene& scene) {
   Owners owners;
@@ -124,6 +121,10 @@ void warn_of(const Scene& scene, const Oddities& oddities) {
     spdlog::warn("{}: {} triangles have no area in TEXCOORD_1 and get no texels of their own", scene.file,
                  oddities.zero_chart);
   }
+  if (oddities.outside_atlas) {
+    spdlog::warn("{}: {} coordinates of TEXCOORD_1 lie a hair outside 0..1 and were pulled in", scene.file,
+                 oddities.outside_atlas);
+  }
   if (oddities.no_triangles) {
     spdlog::warn("{}: {} primitives of points or lines were left out", scene.file, oddities.no_triangles);
   }
@@ -181,9 +182,16 @@ void tell_of_lights(const Scene& scene) {
 }
 
 Scene read_scene(const std::filesystem::path& file, const LoadOptions& options) {
-  const tinygltf::Model model = read_model(file);
+  tinygltf::Model model = read_model(file);
   Scene scene;
   scene.file = file.string();
+  if (auto unwrapped = unwrap(file, model, options.unwrap)) {
+    if (options.unwrap.keep_uv)
+      throw SceneError(unwrapped->reason + ": leave out --keep-uv, or give it charts that do not overlap");
+    spdlog::info("{}: {}", scene.file, printable(summary_of(*unwrapped)));
+    scene.unwrapped = std::move(unwrapped->glb);
+    model = parse_model(scene.unwrapped, file);
+  }
   Materials materials = read_materials(model);
   Oddities oddities;
   std::vector<Piece> pieces = read_pieces(model, options, materials, scene, oddities);
@@ -211,24 +219,10 @@ Scene read_scene(const std::filesystem::path& file, const LoadOptions& options) 
   return scene;
 }
 
-// Names in a file are anybody's text: no control characters reach a terminal or log, and no message is endless.
-std::string printable(std::string text) {
-  if (text.size() > 600) text = text.substr(0, 600) + "...";
-  std::ranges::replace_if(
-      text, [](unsigned char c) { return c < 0x20 || c == 0x7f; }, '?');
-  return text;
-}
-
 }  // namespace
 
 Scene load(const std::filesystem::path& file, const LoadOptions& options) {
-  try {
-    return read_scene(file, options);
-  } catch (const std::bad_alloc&) {
-    throw SceneError(file.string() + ": not enough memory to read it");
-  } catch (const std::exception& e) {  // our own errors, and what tinygltf lets escape from its parser
-    throw SceneError(printable(file.string() + ": " + e.what()));
-  }
+  return naming(file, [&] { return read_scene(file, options); });
 }
 
 }  // namespace lichtveld::scene

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <nlohmann/json.hpp>
 
 #include "lichtveld/scene/scene.hpp"
 
@@ -95,7 +96,22 @@ Callbacks callbacks_beside(Folder& folder) {
 }  // namespace
 
 tinygltf::Model read_model(const fs::path& file) {
-  const std::vector<std::uint8_t> bytes = read_file(file, max_file_bytes);
+  return parse_model(read_file(file, max_file_bytes), file);
+}
+
+nlohmann::json read_json(const fs::path& file) {
+  return parse_json(read_file(file, max_file_bytes));
+}
+
+std::string printable(std::string text) {
+  constexpr std::size_t longest = 600;
+  if (text.size() > longest) text = text.substr(0, longest) + "...";
+  std::ranges::replace_if(
+      text, [](unsigned char c) { return c < 0x20 || c == 0x7f; }, '?');
+  return text;
+}
+
+tinygltf::Model parse_model(std::span<const std::uint8_t> bytes, const fs::path& file) {
   check_container(bytes);
 
   Folder folder{file.has_parent_path() ? file.parent_path() : fs::path(".")};

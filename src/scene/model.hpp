@@ -5,8 +5,12 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <new>
+#include <nlohmann/json_fwd.hpp>
 #include <span>
 #include <string>
+
+#include "lichtveld/scene/scene.hpp"
 
 namespace lichtveld::scene {
 
@@ -18,6 +22,29 @@ void check_container(std::span<const std::uint8_t> bytes);
 // The parsed file. Buffers are loaded; an image holds its encoded bytes when it came by URI, and nothing when
 // it lies in a buffer view. Throws SceneError without the file's name.
 tinygltf::Model read_model(const std::filesystem::path& file);
+
+// The same of a file's bytes; what it names lies beside `file`.
+tinygltf::Model parse_model(std::span<const std::uint8_t> bytes, const std::filesystem::path& file);
+
+// The JSON of a file that was read, or of its bytes.
+nlohmann::json read_json(const std::filesystem::path& file);
+nlohmann::json parse_json(std::span<const std::uint8_t> bytes);
+
+// A message with nothing in it that could harm a terminal: names in a file are anybody's text.
+std::string printable(std::string text);
+
+// What read() gives; what it throws, our own errors and what tinygltf lets escape from its parser, as
+// SceneError with the file's name.
+template <typename Read>
+auto naming(const std::filesystem::path& file, const Read& read) {
+  try {
+    return read();
+  } catch (const std::bad_alloc&) {
+    throw SceneError(file.string() + ": not enough memory to read it");
+  } catch (const std::exception& e) {
+    throw SceneError(printable(file.string() + ": " + e.what()));
+  }
+}
 
 // How messages call a node: "name", or node 7 where it has none.
 std::string node_name(const tinygltf::Model& model, int node);

@@ -3,13 +3,17 @@
 
 #include <tiny_gltf.h>
 
+#include <array>
 #include <glm/glm.hpp>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "accessor.hpp"
 #include "lichtveld/scene/scene.hpp"
+#include "lichtveld/scene/unwrap.hpp"
 
 namespace lichtveld::scene {
 
@@ -51,9 +55,30 @@ struct Owners {
 std::vector<PunctualLight> read_lights(const tinygltf::Model& model, const std::vector<PlacedNode>& nodes,
                                        const Owners& owners, double lumens_per_watt);
 
+// 64 triangles a texel of a 256 x 256 atlas, and 1 GB at worst: more is a mistake.
+inline constexpr std::size_t max_triangles = std::size_t{1} << 22;
+
+// How far an exporter's rounding may push a TEXCOORD_1 out of the unit square; it is pulled back.
+inline constexpr float atlas_rounding = 0.01f;
+
+using Triangle = std::array<std::uint32_t, 3>;  // elements of a primitive's accessors
+
+// The triangles of a primitive, of lists, strips and fans, of which there are at most `max_triangles`; nothing
+// for points and lines. `what` names it in messages.
+struct Shape {
+  Accessor positions;
+  std::vector<Triangle> triangles;
+};
+std::optional<Shape> shape_of(const tinygltf::Model& model, const tinygltf::Primitive& primitive,
+                              std::size_t max_triangles, const std::string& what);
+
+// unwrap() of a file whose model is read already; nothing where its own TEXCOORD_1 stays.
+std::optional<Unwrapped> unwrap(const std::filesystem::path& file, const tinygltf::Model& model,
+                                const UnwrapOptions& options);
+
 // What was odd but harmless, counted over all primitives.
 struct Oddities {
-  std::size_t zero_area = 0, zero_chart = 0, no_triangles = 0, bad_normals = 0;
+  std::size_t zero_area = 0, zero_chart = 0, outside_atlas = 0, no_triangles = 0, bad_normals = 0;
 };
 
 // Where a primitive stands.

@@ -11,14 +11,9 @@
 namespace lichtveld::scene {
 namespace {
 
-using Triangle = std::array<std::uint32_t, 3>;  // elements of the primitive's accessors
-
 // A triangle whose height is less than this share of its longest edge has no normal worth the name: a 32-bit
 // coordinate as long as the edge is rounded by as much.
 constexpr double flat_share = 1e-7;
-
-// How far an exporter's rounding may push a TEXCOORD_1 out of the unit square; it is pulled back.
-constexpr float atlas_rounding = 1e-5f;
 
 // Farther out, 32-bit positions are coarser than 6 cm; such scenes have their unit wrong.
 constexpr double max_coordinate = 1e6;
@@ -88,13 +83,16 @@ glm::vec3 world_position(const Accessor& positions, std::uint32_t i, const glm::
   return p;
 }
 
-glm::vec2 atlas_coordinate(const Accessor& atlas, std::uint32_t i, const std::string& what) {
+glm::vec2 atlas_coordinate(const Accessor& atlas, std::uint32_t i, const std::string& what,
+                           Oddities& oddities) {
   const glm::vec2 uv = atlas.vec2(i), inside = glm::clamp(uv, 0.0f, 1.0f);
   if (!(glm::distance(uv, inside) <= atlas_rounding)) {
     throw SceneError(what + ": TEXCOORD_1 of vertex " + std::to_string(i) + " is (" + std::to_string(uv.x) +
                      ", " + std::to_string(uv.y) +
                      "), outside 0..1: pack the light-map charts into the unit square");
   }
+  constexpr float rounding = 1e-5f;
+  if (glm::distance(uv, inside) > rounding) ++oddities.outside_atlas;
   return inside;
 }
 
@@ -120,20 +118,34 @@ std::optional<Accessor> normals_of(const tinygltf::Model& model, const tinygltf:
 
 }  // namespace
 
+std::optional<Shape> shape_of(const tinygltf::Model& model, const tinygltf::Primitive& primitive,
+                              std::size_t max_triangles, const std::string& what) {
+  if (primitive.mode < TINYGLTF_MODE_POINTS || primitive.mode > TINYGLTF_MODE_TRIANGLE_FAN) {
+    throw SceneError(what + ": unknown mode " + std::to_string(primitive.mode));
+  }
+  if (primitive.mode < TINYGLTF_MODE_TRIANGLES) return std::nullopt;
+  if (!primitive.attributes.contains("POSITION")) throw SceneError(what + " has no POSITION");
+  Shape shape{Accessor(model, attribute(primitive, "POSITION"), what + ", POSITION"), {}};
+  shape.positions.require_vec3();
+  std::optional<Accessor> indices;
+  if (primitive.indices != -1) {
+    indices.emplace(model, primitive.indices, what + ", indices");
+    indices->require_indices();
+  }
+  shape.triangles = triangles_of(primitive, indices, shape.positions.count(), max_triangles, what);
+  return shape;
+}
+
 std::vector<std::uint32_t> add_primitive(const tinygltf::Model& model, const tinygltf::Primitive& primitive,
                                          const Placement& placement, int colour_set, std::size_t max_triangles,
                                          Scene& scene, Oddities& oddities) {
   const std::string what = "node \"" + placement.node + "\", primitive " + std::to_string(placement.primitive);
-  if (primitive.mode < TINYGLTF_MODE_POINTS || primitive.mode > TINYGLTF_MODE_TRIANGLE_FAN) {
-    throw SceneError(what + ": unknown mode " + std::to_string(primitive.mode));
-  }
-  if (primitive.mode < TINYGLTF_MODE_TRIANGLES) {
+  const auto shape = shape_of(model, primitive, max_triangles, what);
+  if (!shape) {
     ++oddities.no_triangles;
     return {};
   }
-  if (!primitive.attributes.contains("POSITION")) throw SceneError(what + " has no POSITION");
-  const Accessor positions(model, attribute(primitive, "POSITION"), what + ", POSITION");
-  positions.require_vec3();
+  const auto& [positions, triangles] = *shape;
   const std::size_t vertices = positions.count();
   const Accessor atlas =
       coordinates(model, primitive, "TEXCOORD_1", vertices, what,
@@ -143,12 +155,6 @@ std::vector<std::uint32_t> add_primitive(const tinygltf::Model& model, const tin
     colours = coordinates(model, primitive, "TEXCOORD_" + std::to_string(colour_set), vertices, what,
                           "its baseColorTexture asks for it");
   }
-  std::optional<Accessor> indices;
-  if (primitive.indices != -1) {
-    indices.emplace(model, primitive.indices, what + ", indices");
-    indices->require_indices();
-  }
-  const std::vector<Triangle> triangles = triangles_of(primitive, indices, vertices, max_triangles, what);
   const std::optional<Accessor> normals = normals_of(model, primitive, triangles, vertices, what, oddities);
 
   const double determinant = glm::determinant(glm::dmat3(placement.world));
@@ -167,7 +173,7 @@ std::vector<std::uint32_t> add_primitive(const tinygltf::Model& model, const tin
     std::array<glm::vec2, 3> uv;
     for (std::size_t k = 0; k < 3; ++k) {
       p[k] = world_position(positions, triangle[k], placement.world, what);
-      uv[k] = atlas_coordinate(atlas, triangle[k], what);
+      uv[k] = atlas_coordinate(atlas, triangle[k], what, oddities);
     }
     const glm::dvec3 a = glm::dvec3(p[1]) - glm::dvec3(p[0]), b = glm::dvec3(p[2]) - glm::dvec3(p[0]);
     const glm::dvec3 cross = glm::cross(a, b);

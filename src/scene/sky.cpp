@@ -266,11 +266,7 @@ std::optional<FoundSky> sky_of_extras(const tinygltf::Value& extras, const fs::p
   if (sky.IsArray() && sky.ArrayLen() == 3)
     return even_sky({number(sky.Get(0), what), number(sky.Get(1), what), number(sky.Get(2), what)}, what);
   if (!sky.IsString()) throw SceneError(what + " is neither [R, G, B] nor the name of a .hdr or .exr");
-  const fs::path file = sky.Get<std::string>();
-  if (file.empty() || file.filename() != file)
-    throw SceneError(what + " \"" + file.string() +
-                     "\" leaves the scene's folder; put the file beside the scene");
-  return sky_of_file(folder / file);
+  return sky_of_file(folder / sky_file_of(extras));
 }
 
 std::optional<FoundSky> sky_of_extension(const tinygltf::Model& model, const tinygltf::Scene& scene) {
@@ -299,6 +295,15 @@ FoundSky sky_of(const std::string& text) {
   if (in >> radiance.r >> a >> radiance.g >> b >> radiance.b && a == ',' && b == ',' && in.peek() == EOF)
     return even_sky(radiance, "sky " + text);
   return sky_of_file(text);
+}
+
+std::string sky_file_of(const tinygltf::Value& extras) {
+  if (!extras.IsObject() || !extras.Has("sky") || !extras.Get("sky").IsString()) return "";
+  const fs::path file = extras.Get("sky").Get<std::string>();
+  if (file.empty() || file.filename() != file)
+    throw SceneError("extras.sky \"" + file.string() +
+                     "\" leaves the scene's folder; put the file beside the scene");
+  return file.string();
 }
 
 std::optional<FoundSky> find_sky(const tinygltf::Model& model, int scene, const fs::path& folder) {

@@ -21,6 +21,9 @@ struct FoundSky {
 // "R,G,B" or a file, as in LoadOptions::sky.
 FoundSky sky_of(const std::string& text);
 
+// The name of the file that extras.sky names; empty where it names none.
+std::string sky_file_of(const tinygltf::Value& extras);
+
 // What the model's scene of that number says: extras.sky ([R, G, B] or the name of a file in `folder`), or
 // EXT_lights_image_based by its coefficients.
 std::optional<FoundSky> find_sky(const tinygltf::Model& model, int scene, const std::filesystem::path& folder);

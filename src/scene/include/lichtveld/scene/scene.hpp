@@ -129,6 +129,14 @@ struct Scene {
   std::vector<PunctualLight> punctual;
   std::optional<Sky> sky;
   std::vector<Light> lights;
+  // Where the file's own atlas cannot be used: the scene as one .glb with the one that was made (unwrap.hpp).
+  std::vector<std::uint8_t> unwrapped;
+};
+
+struct UnwrapOptions {
+  std::uint32_t size = 256;     // texels a side, 16..4096; doubled until the charts find room
+  double texels_per_metre = 0;  // 0: as many as find room
+  bool keep_uv = false;         // refuse instead, in load()
 };
 
 struct LoadOptions {
@@ -138,11 +146,13 @@ struct LoadOptions {
   // Names of nodes that are lights of their own whatever their extras; sky_name is the sky.
   std::vector<std::string> lights = {};
   double lumens_per_watt = 1;  // that the file's punctual lights are divided by
+  UnwrapOptions unwrap = {};
 };
 
 // Reads a .glb or .gltf file. Throws SceneError for a file that is missing, damaged or hostile, or that lacks
-// what the light field needs (triangles, TEXCOORD_1), or for options that name nothing in it. What is odd but
-// harmless (zero-area triangles, no emitter) is logged as a warning.
+// what the light field needs (triangles), or for options that name nothing in it. Where TEXCOORD_1 is missing
+// or cannot be used, the scene is unwrapped (unwrap.hpp). What is odd but harmless (zero-area triangles, no
+// emitter) is logged as a warning.
 Scene load(const std::filesystem::path& file, const LoadOptions& options = {});
 
 // The smallest sphere around the scene's bounding box with body i shifted by offsets[i] [m] (offsets may be

@@ -1,0 +1,224 @@
+#include "plain_file.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <limits>
+
+#include "accessor.hpp"
+#include "lichtveld/scene/scene.hpp"
+
+namespace lichtveld::scene {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::uint32_t json_chunk_type = 0x4e4f534a, binary_chunk_type = 0x004e4942;
+
+void append(PlainFile::Bytes& to, std::uint32_t value) {
+  for (int shift = 0; shift < 32; shift += 8) to.push_back(static_cast<unsigned char>(value >> shift));
+}
+
+void pad(PlainFile::Bytes& bytes, unsigned char with) {
+  while (bytes.size() % 4 != 0) bytes.push_back(with);
+}
+
+// What a chunk of indices or vertices is for, which readers may use to place it.
+int target_of(const std::string& semantic) {
+  return semantic.empty() ? 0 : TINYGLTF_TARGET_ARRAY_BUFFER;
+}
+
+std::string mime_type_of(std::span<const unsigned char> bytes) {
+  const auto starts = [&](std::string_view magic) {
+    return bytes.size() >= magic.size() && std::memcmp(bytes.data(), magic.data(), magic.size()) == 0;
+  };
+  if (starts("\x89PNG")) return "image/png";
+  if (starts("\xff\xd8\xff")) return "image/jpeg";
+  if (starts("RIFF")) return "image/webp";
+  if (starts("\xabKTX")) return "image/ktx2";
+  return "";
+}
+
+// The least and the most of each component of a VEC3 of float, which POSITION has to state.
+void state_range(json& description, const PlainFile::Bytes& bytes, std::size_t stride) {
+  if (description["componentType"] != TINYGLTF_COMPONENT_TYPE_FLOAT || description["type"] != "VEC3") return;
+  std::array<float, 3> low{}, high{};
+  low.fill(std::numeric_limits<float>::infinity());
+  high.fill(-std::numeric_limits<float>::infinity());
+  for (std::size_t at = 0; at + 12 <= bytes.size(); at += stride)
+    for (std::size_t c = 0; c < 3; ++c) {
+      float value = 0;
+      std::memcpy(&value, &bytes[at + 4 * c], 4);
+      low[c] = std::min(low[c], value);
+      high[c] = std::max(high[c], value);
+    }
+  description["min"] = low;
+  description["max"] = high;
+}
+
+}  // namespace
+
+PlainFile::PlainFile(json root, const tinygltf::Model& model)
+    : root_(std::move(root)), model_(model), is_new_(model.nodes.size()) {}
+
+int PlainFile::add_view(const Bytes& bytes, int target, std::size_t stride) {
+  pad(binary_, 0);
+  json view = {{"buffer", 0}, {"byteOffset", binary_.size()}, {"byteLength", bytes.size()}};
+  if (target != 0) view["target"] = target;
+  if (target == TINYGLTF_TARGET_ARRAY_BUFFER) view["byteStride"] = stride;
+  binary_.insert(binary_.end(), bytes.begin(), bytes.end());
+  views_.push_back(std::move(view));
+  return static_cast<int>(views_.size()) - 1;
+}
+
+int PlainFile::add_accessor(json description, const Bytes& bytes, int target, std::size_t stride) {
+  description["bufferView"] = add_view(bytes, target, stride);
+  accessors_.push_back(std::move(description));
+  return static_cast<int>(accessors_.size()) - 1;
+}
+
+int PlainFile::carried(int accessor) {
+  if (const auto known = carried_.find(accessor); known != carried_.end()) return known->second;
+  const Accessor in(model_, accessor, "the file");
+  json description = root_["accessors"][static_cast<std::size_t>(accessor)];
+  for (const char* gone : {"bufferView", "byteOffset", "sparse"}) description.erase(gone);
+  const std::size_t element = in.element_bytes();
+  Bytes bytes(in.count() * element);
+  for (std::size_t i = 0; i < in.count(); ++i) std::memcpy(&bytes[i * element], in.element(i), element);
+  return carried_[accessor] = add_accessor(std::move(description), bytes, 0, element);
+}
+
+int PlainFile::chosen(int accessor, std::span<const std::uint32_t> elements, const std::string& semantic) {
+  const Accessor in(model_, accessor, semantic);
+  json description = root_["accessors"][static_cast<std::size_t>(accessor)];
+  for (const char* gone : {"bufferView", "byteOffset", "sparse", "min", "max"}) description.erase(gone);
+  description["count"] = elements.size();
+  const std::size_t element = in.element_bytes(), stride = (element + 3) / 4 * 4;
+  Bytes bytes(elements.size() * stride);
+  for (std::size_t i = 0; i < elements.size(); ++i) {
+    if (elements[i] >= in.count()) throw SceneError(semantic + " has fewer elements than POSITION");
+    std::memcpy(&bytes[i * stride], in.element(elements[i]), element);
+  }
+  if (semantic == "POSITION") state_range(description, bytes, stride);
+  return add_accessor(std::move(description), bytes, target_of(semantic), stride);
+}
+
+int PlainFile::add_vectors(std::span<const float> numbers, std::size_t components, const char* type) {
+  Bytes bytes(numbers.size_bytes());
+  std::memcpy(bytes.data(), numbers.data(), bytes.size());
+  return add_accessor({{"componentType", TINYGLTF_COMPONENT_TYPE_FLOAT},
+                       {"count", numbers.size() / components},
+                       {"type", type}},
+                      bytes, TINYGLTF_TARGET_ARRAY_BUFFER, components * sizeof(float));
+}
+
+int PlainFile::add_vec2(std::span<const float> numbers) {
+  return add_vectors(numbers, 2, "VEC2");
+}
+
+int PlainFile::add_vec3(std::span<const float> numbers) {
+  return add_vectors(numbers, 3, "VEC3");
+}
+
+int PlainFile::add_indices(std::span<const std::uint32_t> indices) {
+  Bytes bytes(indices.size_bytes());
+  std::memcpy(bytes.data(), indices.data(), bytes.size());
+  return add_accessor(
+      {{"componentType", TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT}, {"count", indices.size()}, {"type", "SCALAR"}},
+      bytes, TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER, sizeof(std::uint32_t));
+}
+
+int PlainFile::add_mesh(json mesh) {
+  meshes_.push_back(std::move(mesh));
+  return static_cast<int>(meshes_.size()) - 1;
+}
+
+void PlainFile::show(std::size_t node, int mesh) {
+  root_["nodes"][node]["mesh"] = mesh;
+  is_new_[node] = true;
+}
+
+int PlainFile::carried_mesh(int mesh) {
+  if (const auto known = carried_meshes_.find(mesh); known != carried_meshes_.end()) return known->second;
+  json copy = root_["meshes"].at(static_cast<std::size_t>(mesh));
+  for (json& primitive : copy["primitives"]) {
+    if (primitive.contains("extensions")) primitive["extensions"].erase("KHR_draco_mesh_compression");
+    if (primitive.contains("indices")) primitive["indices"] = carried(primitive["indices"].get<int>());
+    for (auto& [semantic, accessor] : primitive["attributes"].items()) accessor = carried(accessor.get<int>());
+    if (primitive.contains("targets"))
+      for (json& target : primitive["targets"])
+        for (auto& [semantic, accessor] : target.items()) accessor = carried(accessor.get<int>());
+  }
+  return carried_meshes_[mesh] = add_mesh(std::move(copy));
+}
+
+void PlainFile::carry_images() {
+  if (!root_.contains("images")) return;
+  for (std::size_t i = 0; i < root_["images"].size(); ++i) {
+    json& image = root_["images"][i];
+    const auto& in = model_.images.at(i);
+    Bytes bytes = in.image;
+    if (image.contains("bufferView")) {
+      const auto& view = model_.bufferViews.at(image["bufferView"].get<std::size_t>());
+      const auto& data = model_.buffers.at(static_cast<std::size_t>(view.buffer)).data;
+      const auto begin = data.begin() + static_cast<std::ptrdiff_t>(view.byteOffset);
+      bytes.assign(begin, begin + static_cast<std::ptrdiff_t>(view.byteLength));
+    }
+    const std::string type = mime_type_of(bytes);
+    if (type.empty()) continue;  // missing, or nothing that can be said without its name
+    image.erase("uri");
+    image["mimeType"] = type;
+    image["bufferView"] = add_view(bytes, 0, 0);
+  }
+}
+
+PlainFile::Bytes PlainFile::finish() {
+  if (root_.contains("nodes"))
+    for (std::size_t node = 0; node < root_["nodes"].size(); ++node) {
+      json& in = root_["nodes"][node];
+      if (in.contains("mesh") && !is_new_[node]) in["mesh"] = carried_mesh(in["mesh"].get<int>());
+    }
+  const auto carry = [&](json& owner, const char* key) {
+    if (owner.contains(key)) owner[key] = carried(owner[key].get<int>());
+  };
+  if (root_.contains("animations"))
+    for (json& animation : root_["animations"])
+      for (json& sampler : animation["samplers"]) carry(sampler, "input"), carry(sampler, "output");
+  if (root_.contains("skins"))
+    for (json& skin : root_["skins"]) carry(skin, "inverseBindMatrices");
+  carry_images();
+  pad(binary_, 0);
+  for (const auto& [key, value] :
+       {std::pair{"accessors", &accessors_}, {"bufferViews", &views_}, {"meshes", &meshes_}})
+    root_[key] = std::move(*value);
+  root_["buffers"] = json::array({{{"byteLength", binary_.size()}}});
+  for (const char* key : {"extensionsUsed", "extensionsRequired"}) {
+    if (!root_.contains(key)) continue;
+    json left = json::array();
+    for (const json& name : root_[key])
+      if (name != "KHR_draco_mesh_compression" && name != "EXT_meshopt_compression") left.push_back(name);
+    if (left.empty())
+      root_.erase(key);
+    else
+      root_[key] = left;
+  }
+  const std::string dumped = root_.dump(-1, ' ', false, json::error_handler_t::replace);
+  Bytes text(dumped.begin(), dumped.end());
+  pad(text, ' ');
+  constexpr std::size_t header = 12, chunk_header = 8;
+  const std::size_t length = header + 2 * chunk_header + text.size() + binary_.size();
+  if (length > std::numeric_limits<std::uint32_t>::max())
+    throw SceneError("unwrapped it would be larger than a .glb can be: simplify it");
+  Bytes glb = {'g', 'l', 'T', 'F'};
+  glb.reserve(length);
+  append(glb, 2);
+  append(glb, static_cast<std::uint32_t>(length));
+  append(glb, static_cast<std::uint32_t>(text.size()));
+  append(glb, json_chunk_type);
+  glb.insert(glb.end(), text.begin(), text.end());
+  append(glb, static_cast<std::uint32_t>(binary_.size()));
+  append(glb, binary_chunk_type);
+  glb.insert(glb.end(), binary_.begin(), binary_.end());
+  return glb;
+}
+
+}  // namespace lichtveld::scene

@@ -1,0 +1,58 @@
+// A glTF file written anew as one .glb whose accessors are plain: neither sparse nor compressed. What is not
+// asked to change stays: materials, animations, cameras, names, extras, extensions.
+#pragma once
+
+#include <tiny_gltf.h>
+
+#include <cstdint>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace lichtveld::scene {
+
+class PlainFile {
+ public:
+  using Bytes = std::vector<unsigned char>;
+
+  // Of a file's JSON and its model, which must outlive it.
+  PlainFile(nlohmann::json root, const tinygltf::Model& model);
+
+  nlohmann::json& root() { return root_; }
+
+  // Numbers of the accessors that are written: one of the model's, whole, or chosen elements of it for
+  // vertices; or one of our own.
+  int carried(int accessor);
+  int chosen(int accessor, std::span<const std::uint32_t> elements, const std::string& semantic);
+  int add_vec2(std::span<const float> numbers);
+  int add_vec3(std::span<const float> numbers);
+  int add_indices(std::span<const std::uint32_t> indices);
+
+  // Adds a mesh whose primitives have numbers of written accessors; the number that nodes give.
+  int add_mesh(nlohmann::json mesh);
+
+  // From now on a node shows an added mesh.
+  void show(std::size_t node, int mesh);
+
+  // The .glb. Meshes that were not added are those of the nodes that were not asked to change.
+  Bytes finish();
+
+ private:
+  int add_view(const Bytes& bytes, int target, std::size_t stride);
+  int add_vectors(std::span<const float> numbers, std::size_t components, const char* type);
+  int add_accessor(nlohmann::json description, const Bytes& bytes, int target, std::size_t stride);
+  int carried_mesh(int mesh);
+  void carry_images();
+
+  nlohmann::json root_;
+  const tinygltf::Model& model_;
+  nlohmann::json accessors_ = nlohmann::json::array(), views_ = nlohmann::json::array(),
+                 meshes_ = nlohmann::json::array();
+  std::map<int, int> carried_, carried_meshes_;
+  std::vector<bool> is_new_;  // by node: its mesh is an added one
+  Bytes binary_;
+};
+
+}  // namespace lichtveld::scene
