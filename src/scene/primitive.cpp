@@ -70,7 +70,7 @@ Accessor coordinates(const tinygltf::Model& model, const tinygltf::Primitive& pr
   const int index = attribute(primitive, name);
   if (!primitive.attributes.contains(name)) throw SceneError(what + " has no " + name + ": " + advice);
   Accessor result(model, index, what + ", " + name);
-  result.require_vec2();
+  result.require_vectors(2);
   if (result.count() < vertices) throw SceneError(what + ": " + name + " has fewer elements than POSITION");
   return result;
 }
@@ -104,7 +104,7 @@ std::optional<Accessor> normals_of(const tinygltf::Model& model, const tinygltf:
                                    const std::string& what, Oddities& oddities) {
   if (!primitive.attributes.contains("NORMAL")) return std::nullopt;
   Accessor normals(model, attribute(primitive, "NORMAL"), what + ", NORMAL");
-  normals.require_vec3();
+  normals.require_vectors(3);
   if (normals.count() < vertices) throw SceneError(what + ": NORMAL has fewer elements than POSITION");
   for (const Triangle& triangle : triangles) {
     for (std::uint32_t i : triangle) {
@@ -133,7 +133,7 @@ std::vector<std::uint32_t> add_primitive(const tinygltf::Model& model, const tin
   }
   if (!primitive.attributes.contains("POSITION")) throw SceneError(what + " has no POSITION");
   const Accessor positions(model, attribute(primitive, "POSITION"), what + ", POSITION");
-  positions.require_vec3();
+  positions.require_vectors(3);
   const std::size_t vertices = positions.count();
   const Accessor atlas =
       coordinates(model, primitive, "TEXCOORD_1", vertices, what,

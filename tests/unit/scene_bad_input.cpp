@@ -121,13 +121,6 @@ const std::vector<SpoiltCase> spoilt_cases = {
        b.gltf["buffers"] = {{{"byteLength", 4}, {"uri", "/etc/passwd"}}};
      },
      "leaves the scene's folder"},
-    {"Sparse",
-     [](auto& b) {
-       b.gltf["accessors"][0]["sparse"] = {{"count", 1},
-                                           {"indices", {{"bufferView", 2}, {"componentType", 5123}}},
-                                           {"values", {{"bufferView", 0}}}};
-     },
-     "is sparse, which is not supported"},
     {"TextureOutside",
      [](auto& b) {
        b.gltf["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"] = {{"index", 3}};
