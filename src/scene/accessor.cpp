@@ -129,7 +129,7 @@ void Accessor::require_vectors(int components) const {
                      component_type_ == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE ||
                      component_type_ == TINYGLTF_COMPONENT_TYPE_SHORT ||
                      component_type_ == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT;
-  if (!vector || !known || tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(type_)) != components)
+  if (!vector || !known || this->components() != components)
     throw SceneError(what_ + ": expected VEC" + std::to_string(components) + " of float, byte or short");
 }
 

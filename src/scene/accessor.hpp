@@ -25,6 +25,7 @@ class Accessor {
   Accessor(const tinygltf::Model& model, int index, std::string what);
 
   std::size_t count() const { return elements_.count; }
+  int components() const { return tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(type_)); }
 
   // Throw SceneError unless the accessor is of that kind.
   void require_vectors(

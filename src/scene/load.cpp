@@ -92,7 +92,7 @@ std::vector<Piece> read_pieces(const tinygltf::Model& model, const LoadOptions& 
     if (node.mesh < 0 || static_cast<std::size_t>(node.mesh) >= model.meshes.size()) {
       throw SceneError("node \"" + name + "\": there is no mesh " + std::to_string(node.mesh));
     }
-    if (node.skin >= 0) spdlog::warn("{}: node \"{}\" has a skin, which is ignored", scene.file, name);
+    if (node.skin >= 0) oddities.remarks.add("has a skin, which is ignored", "node \"" + name + "\"");
     const auto& primitives = model.meshes[static_cast<std::size_t>(node.mesh)].primitives;
     for (std::uint32_t i = 0; i < primitives.size(); ++i) {
       const int material = primitives[i].material;
@@ -107,8 +107,8 @@ std::vector<Piece> read_pieces(const tinygltf::Model& model, const LoadOptions& 
                    .body = body,
                    .light = owners.light.at(placed.light)},
                   {}};
-      piece.indices = add_primitive(model, primitives[i], {name, i, body, placed.world},
-                                    materials.colour_set[slot], triangles_left, scene, oddities);
+      piece.indices = add_primitive(model, primitives[i], {name, i, body, placed.world}, materials.colour[slot],
+                                    triangles_left, scene, oddities);
       triangles_left -= piece.indices.size() / 3;
       if (!piece.indices.empty()) pieces.push_back(std::move(piece));
     }
@@ -131,6 +131,7 @@ void warn_of(const Scene& scene, const Oddities& oddities) {
     spdlog::warn("{}: {} primitives have unusable normals; their faces' own are used", scene.file,
                  oddities.bad_normals);
   }
+  oddities.remarks.tell(scene.file);
   if (!has_light(scene))
     spdlog::warn("{}: nothing emits light; give a material an emissiveFactor, add a light, or try --sky 1,1,1",
                  scene.file);
@@ -184,8 +185,8 @@ Scene read_scene(const std::filesystem::path& file, const LoadOptions& options) 
   const tinygltf::Model model = read_model(file);
   Scene scene;
   scene.file = file.string();
-  Materials materials = read_materials(model);
   Oddities oddities;
+  Materials materials = read_materials(model, oddities.remarks);
   std::vector<Piece> pieces = read_pieces(model, options, materials, scene, oddities);
   scene.materials = std::move(materials.materials);
   scene.textures = std::move(materials.textures);
@@ -209,14 +210,6 @@ Scene read_scene(const std::filesystem::path& file, const LoadOptions& options) 
   warn_of(scene, oddities);
   tell_of_lights(scene);
   return scene;
-}
-
-// Names in a file are anybody's text: no control characters reach a terminal or log, and no message is endless.
-std::string printable(std::string text) {
-  if (text.size() > 600) text = text.substr(0, 600) + "...";
-  std::ranges::replace_if(
-      text, [](unsigned char c) { return c < 0x20 || c == 0x7f; }, '?');
-  return text;
 }
 
 }  // namespace

@@ -10,16 +10,18 @@
 #include <vector>
 
 #include "lichtveld/scene/scene.hpp"
+#include "remarks.hpp"
+#include "textures.hpp"
 
 namespace lichtveld::scene {
 
 struct Materials {
-  std::vector<Material> materials;  // as in the file, and behind them glTF's default material
-  std::vector<Texture> textures;    // those that a base colour asks for
-  std::vector<int> colour_set;      // a material's TEXCOORD set for its texture, or -1
+  std::vector<Material> materials;         // as in the file, and behind them glTF's default material
+  std::vector<Texture> textures;           // those that a base colour asks for
+  std::vector<TextureCoordinates> colour;  // where a material's texture is read
 };
 
-Materials read_materials(const tinygltf::Model& model);
+Materials read_materials(const tinygltf::Model& model, Remarks& remarks);
 
 // A node of the scene. Nodes come in the order of the file.
 struct PlacedNode {
@@ -51,9 +53,10 @@ struct Owners {
 std::vector<PunctualLight> read_lights(const tinygltf::Model& model, const std::vector<PlacedNode>& nodes,
                                        const Owners& owners, double lumens_per_watt);
 
-// What was odd but harmless, counted over all primitives.
+// What was odd but harmless, over all primitives.
 struct Oddities {
   std::size_t zero_area = 0, zero_chart = 0, no_triangles = 0, bad_normals = 0;
+  Remarks remarks;
 };
 
 // Where a primitive stands.
@@ -64,9 +67,9 @@ struct Placement {
 };
 
 // Appends a primitive's vertices to scene.vertices and returns its triangles' indices into them, of
-// which there are at most `max_triangles`. `colour_set` as in Materials.
+// which there are at most `max_triangles`. `colour` as in Materials.
 std::vector<std::uint32_t> add_primitive(const tinygltf::Model& model, const tinygltf::Primitive& primitive,
-                                         const Placement& placement, int colour_set, std::size_t max_triangles,
-                                         Scene& scene, Oddities& oddities);
+                                         const Placement& placement, const TextureCoordinates& colour,
+                                         std::size_t max_triangles, Scene& scene, Oddities& oddities);
 
 }  // namespace lichtveld::scene

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <glm/gtc/packing.hpp>
 #include <optional>
 #include <unordered_map>
 
@@ -98,6 +99,38 @@ glm::vec2 atlas_coordinate(const Accessor& atlas, std::uint32_t i, const std::st
   return inside;
 }
 
+// What the texture is read by. Where the primitive lacks that set, viewers take (0, 0).
+std::optional<Accessor> colours_of(const tinygltf::Model& model, const tinygltf::Primitive& primitive, int set,
+                                   std::size_t vertices, const std::string& what, Oddities& oddities) {
+  if (set < 0) return std::nullopt;
+  const std::string name = "TEXCOORD_" + std::to_string(set);
+  if (!primitive.attributes.contains(name)) {
+    oddities.remarks.add("has no " + name + " for its texture, whose corner colours it all", what);
+    return std::nullopt;
+  }
+  return coordinates(model, primitive, name, vertices, what, "");
+}
+
+// COLOR_0.
+std::optional<Accessor> tints_of(const tinygltf::Model& model, const tinygltf::Primitive& primitive,
+                                 std::size_t vertices, const std::string& what) {
+  if (!primitive.attributes.contains("COLOR_0")) return std::nullopt;
+  Accessor tints(model, attribute(primitive, "COLOR_0"), what + ", COLOR_0");
+  tints.require_vectors(tints.components() == 3 ? 3 : 4);
+  if (tints.count() < vertices) throw SceneError(what + ": COLOR_0 has fewer elements than POSITION");
+  return tints;
+}
+
+// Vertex::tint, which takes whatever 8 or 16 bits hold as it is.
+glm::u16vec4 tint_of(const std::optional<Accessor>& tints, std::uint32_t i, const std::string& what) {
+  if (!tints) return glm::u16vec4(65535);
+  const glm::vec4 tint = tints->components() == 3 ? glm::vec4(tints->vec3(i), 1) : tints->vec4(i);
+  for (int c = 0; c < 4; ++c)
+    if (!std::isfinite(tint[c]))
+      throw SceneError(what + ": COLOR_0 of vertex " + std::to_string(i) + " is not finite");
+  return glm::packUnorm<std::uint16_t>(glm::clamp(tint, 0.0f, 1.0f));
+}
+
 // The normals of a primitive, or nothing where faces have to stand in for them.
 std::optional<Accessor> normals_of(const tinygltf::Model& model, const tinygltf::Primitive& primitive,
                                    const std::vector<Triangle>& triangles, std::size_t vertices,
@@ -121,8 +154,8 @@ std::optional<Accessor> normals_of(const tinygltf::Model& model, const tinygltf:
 }  // namespace
 
 std::vector<std::uint32_t> add_primitive(const tinygltf::Model& model, const tinygltf::Primitive& primitive,
-                                         const Placement& placement, int colour_set, std::size_t max_triangles,
-                                         Scene& scene, Oddities& oddities) {
+                                         const Placement& placement, const TextureCoordinates& colour,
+                                         std::size_t max_triangles, Scene& scene, Oddities& oddities) {
   const std::string what = "node \"" + placement.node + "\", primitive " + std::to_string(placement.primitive);
   if (primitive.mode < TINYGLTF_MODE_POINTS || primitive.mode > TINYGLTF_MODE_TRIANGLE_FAN) {
     throw SceneError(what + ": unknown mode " + std::to_string(primitive.mode));
@@ -138,11 +171,8 @@ std::vector<std::uint32_t> add_primitive(const tinygltf::Model& model, const tin
   const Accessor atlas =
       coordinates(model, primitive, "TEXCOORD_1", vertices, what,
                   "unwrap the scene into a second UV map without overlaps (the light map's)");
-  std::optional<Accessor> colours;
-  if (colour_set >= 0) {
-    colours = coordinates(model, primitive, "TEXCOORD_" + std::to_string(colour_set), vertices, what,
-                          "its baseColorTexture asks for it");
-  }
+  const std::optional<Accessor> colours = colours_of(model, primitive, colour.set, vertices, what, oddities);
+  const std::optional<Accessor> tints = tints_of(model, primitive, vertices, what);
   std::optional<Accessor> indices;
   if (primitive.indices != -1) {
     indices.emplace(model, primitive.indices, what + ", indices");
@@ -190,13 +220,13 @@ std::vector<std::uint32_t> add_primitive(const tinygltf::Model& model, const tin
       }
       const glm::dvec3 direction = normals ? cofactors * glm::dvec3(normals->vec3(i)) : cross;
       const double length = glm::length(direction);
-      const glm::vec2 colour = colours ? colours->vec2(i) : glm::vec2(0);
-      if (!std::isfinite(colour.x) || !std::isfinite(colour.y)) {
+      const glm::vec2 at = colour.transform * glm::dvec3(colours ? colours->vec2(i) : glm::vec2(0), 1);
+      if (!std::isfinite(at.x) || !std::isfinite(at.y)) {
         throw SceneError(what + ": the texture coordinate of vertex " + std::to_string(i) + " is not finite");
       }
       // A flattening node can leave a normal without length; the face's own is right then.
-      scene.vertices.push_back(
-          {p[k], glm::normalize(length > 0 ? direction : cross), uv[k], colour, placement.body});
+      scene.vertices.push_back({p[k], glm::normalize(length > 0 ? direction : cross), uv[k], at, placement.body,
+                                tint_of(tints, i, what)});
     }
   }
   return result;

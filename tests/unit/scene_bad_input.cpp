@@ -138,7 +138,7 @@ const std::vector<SpoiltCase> spoilt_cases = {
        b.gltf["textures"] = {{{"source", 0}}};
        b.gltf["images"] = {{{"bufferView", 0}, {"mimeType", "image/png"}}};
      },
-     "image 0 is neither PNG nor JPEG"},
+     "image 0 is no PNG, JPEG or WebP"},
     {"ImageBroken",
      [](auto& b) {
        b.gltf["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"] = {{"index", 0}};

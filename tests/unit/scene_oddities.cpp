@@ -32,7 +32,7 @@ TEST(SceneOddities, EachIsWarnedOf) {
          attributes(b)["NORMAL"] = b.accessor(std::vector<glm::vec3>(4, glm::vec3(0)), 5126, "VEC3");
        },
        "1 primitives have unusable normals"},
-      {"Skin", [](auto& b) { b.gltf["nodes"][0]["skin"] = 0; }, "node \"floor\" has a skin, which is ignored"},
+      {"Skin", [](auto& b) { b.gltf["nodes"][0]["skin"] = 0; }, "node \"floor\": has a skin, which is ignored"},
       {"EmissiveTexture",
        [](auto& b) {
          b.gltf["materials"][0]["emissiveTexture"] = {{"index", 0}};
