@@ -8,6 +8,7 @@
 #include "lichtveld/scene/lights.hpp"
 #include "model.hpp"
 #include "parts.hpp"
+#include "skins.hpp"
 #include "sky.hpp"
 
 namespace lichtveld::scene {
@@ -84,7 +85,8 @@ std::vector<Piece> read_pieces(const tinygltf::Model& model, const LoadOptions& 
   const Owners owners = find_owners(model, nodes, scene);
   scene.punctual = read_lights(model, nodes, owners, options.lumens_per_watt);
   std::vector<Piece> pieces;
-  std::size_t triangles_left = max_triangles;
+  std::size_t triangles_left = max_triangles, primitives_left = max_triangles;
+  SkinReader skins(model, nodes, oddities.remarks);
   for (const PlacedNode& placed : nodes) {
     const tinygltf::Node& node = model.nodes[static_cast<std::size_t>(placed.node)];
     if (node.mesh == -1) continue;
@@ -92,8 +94,13 @@ std::vector<Piece> read_pieces(const tinygltf::Model& model, const LoadOptions& 
     if (node.mesh < 0 || static_cast<std::size_t>(node.mesh) >= model.meshes.size()) {
       throw SceneError("node \"" + name + "\": there is no mesh " + std::to_string(node.mesh));
     }
-    if (node.skin >= 0) oddities.remarks.add("has a skin, which is ignored", "node \"" + name + "\"");
-    const auto& primitives = model.meshes[static_cast<std::size_t>(node.mesh)].primitives;
+    const auto& mesh = model.meshes[static_cast<std::size_t>(node.mesh)];
+    const auto& primitives = mesh.primitives;
+    if (primitives.size() > primitives_left)
+      throw SceneError("node \"" + name + "\": the scene has more than 4 million primitives; simplify it");
+    primitives_left -= primitives.size();
+    const auto poses =
+        node.skin == -1 ? std::span<const glm::dmat4>() : skins.poses(node.skin, "node \"" + name + "\"");
     for (std::uint32_t i = 0; i < primitives.size(); ++i) {
       const int material = primitives[i].material;
       if (material < -1 || (material >= 0 && static_cast<std::size_t>(material) >= model.materials.size())) {
@@ -107,9 +114,9 @@ std::vector<Piece> read_pieces(const tinygltf::Model& model, const LoadOptions& 
                    .body = body,
                    .light = owners.light.at(placed.light)},
                   {}};
-      piece.indices = add_primitive(model, primitives[i], {name, i, body, placed.world}, materials.colour[slot],
-                                    triangles_left, scene, oddities);
-      triangles_left -= piece.indices.size() / 3;
+      const auto& weights = node.weights.empty() ? mesh.weights : node.weights;
+      piece.indices = add_primitive(model, primitives[i], {name, i, body, placed.world, weights, poses},
+                                    materials.colour[slot], triangles_left, scene, oddities);
       if (!piece.indices.empty()) pieces.push_back(std::move(piece));
     }
   }
@@ -182,10 +189,10 @@ void tell_of_lights(const Scene& scene) {
 }
 
 Scene read_scene(const std::filesystem::path& file, const LoadOptions& options) {
-  const tinygltf::Model model = read_model(file);
   Scene scene;
   scene.file = file.string();
   Oddities oddities;
+  const tinygltf::Model model = read_model(file, oddities.remarks);
   Materials materials = read_materials(model, oddities.remarks);
   std::vector<Piece> pieces = read_pieces(model, options, materials, scene, oddities);
   scene.materials = std::move(materials.materials);

@@ -1,12 +1,11 @@
 // The file system as tinygltf may see it, and the call of tinygltf.
 #include "model.hpp"
 
-#include <spdlog/spdlog.h>
-
 #include <algorithm>
 #include <fstream>
 
 #include "lichtveld/scene/scene.hpp"
+#include "plain.hpp"
 
 namespace lichtveld::scene {
 namespace {
@@ -94,9 +93,8 @@ Callbacks callbacks_beside(Folder& folder) {
 
 }  // namespace
 
-tinygltf::Model read_model(const fs::path& file) {
-  const std::vector<std::uint8_t> bytes = read_file(file, max_file_bytes);
-  check_container(bytes);
+tinygltf::Model read_model(const fs::path& file, Remarks& remarks) {
+  const std::vector<std::uint8_t> bytes = checked(read_file(file, max_file_bytes), remarks);
 
   Folder folder{file.has_parent_path() ? file.parent_path() : fs::path(".")};
   tinygltf::TinyGLTF reader;
@@ -115,7 +113,8 @@ tinygltf::Model read_model(const fs::path& file) {
     std::ranges::replace(error, '\n', ' ');
     throw SceneError("not valid glTF: " + (error.empty() ? "unknown reason" : error));
   }
-  if (!warning.empty()) spdlog::warn("{}: {}", file.string(), warning);
+  if (!warning.empty()) remarks.add(warning);
+  make_plain(model);
   return model;
 }
 

@@ -59,17 +59,19 @@ struct Oddities {
   Remarks remarks;
 };
 
-// Where a primitive stands.
+// Where a primitive stands, and in which shape.
 struct Placement {
   std::string node;
   std::uint32_t primitive = 0, body = 0;
   glm::dmat4 world{1};
+  std::span<const double> weights = {};    // of its morph targets; of those that it does not name, 0
+  std::span<const glm::dmat4> poses = {};  // of its skin's joints, which stand for `world`
 };
 
-// Appends a primitive's vertices to scene.vertices and returns its triangles' indices into them, of
-// which there are at most `max_triangles`. `colour` as in Materials.
+// Appends a primitive's vertices to scene.vertices and returns its triangles' indices into them. `colour` as in
+// Materials. Takes what it reads from `triangles_left`, and throws SceneError where that is not enough.
 std::vector<std::uint32_t> add_primitive(const tinygltf::Model& model, const tinygltf::Primitive& primitive,
                                          const Placement& placement, const TextureCoordinates& colour,
-                                         std::size_t max_triangles, Scene& scene, Oddities& oddities);
+                                         std::size_t& triangles_left, Scene& scene, Oddities& oddities);
 
 }  // namespace lichtveld::scene

@@ -8,6 +8,7 @@
 
 #include "accessor.hpp"
 #include "parts.hpp"
+#include "vertices.hpp"
 
 namespace lichtveld::scene {
 namespace {
@@ -76,9 +77,9 @@ Accessor coordinates(const tinygltf::Model& model, const tinygltf::Primitive& pr
   return result;
 }
 
-glm::vec3 world_position(const Accessor& positions, std::uint32_t i, const glm::dmat4& world,
+glm::vec3 world_position(const Vertices& vertices, std::uint32_t i, const glm::dmat4& world,
                          const std::string& what) {
-  const glm::dvec3 p = world * glm::dvec4(positions.vec3(i), 1);
+  const glm::dvec3 p = world * glm::dvec4(vertices.position(i), 1);
   for (int c = 0; c < 3; ++c) {
     if (!(std::abs(p[c]) <= max_coordinate)) {
       throw SceneError(what + ": vertex " + std::to_string(i) +
@@ -131,31 +132,26 @@ glm::u16vec4 tint_of(const std::optional<Accessor>& tints, std::uint32_t i, cons
   return glm::packUnorm<std::uint16_t>(glm::clamp(tint, 0.0f, 1.0f));
 }
 
-// The normals of a primitive, or nothing where faces have to stand in for them.
-std::optional<Accessor> normals_of(const tinygltf::Model& model, const tinygltf::Primitive& primitive,
-                                   const std::vector<Triangle>& triangles, std::size_t vertices,
-                                   const std::string& what, Oddities& oddities) {
-  if (!primitive.attributes.contains("NORMAL")) return std::nullopt;
-  Accessor normals(model, attribute(primitive, "NORMAL"), what + ", NORMAL");
-  normals.require_vectors(3);
-  if (normals.count() < vertices) throw SceneError(what + ": NORMAL has fewer elements than POSITION");
+// Whether the primitive has normals that can be used; faces' own stand in for them where not.
+bool has_good_normals(const Vertices& vertices, const std::vector<Triangle>& triangles, Oddities& oddities) {
+  if (!vertices.has_normals()) return false;
   for (const Triangle& triangle : triangles) {
     for (std::uint32_t i : triangle) {
-      const double length = glm::length(glm::dvec3(normals.vec3(i)));
+      const double length = glm::length(vertices.normal(i));
       if (!(length > 1e-6 && length < 1e6)) {
         ++oddities.bad_normals;
-        return std::nullopt;
+        return false;
       }
     }
   }
-  return normals;
+  return true;
 }
 
 }  // namespace
 
 std::vector<std::uint32_t> add_primitive(const tinygltf::Model& model, const tinygltf::Primitive& primitive,
                                          const Placement& placement, const TextureCoordinates& colour,
-                                         std::size_t max_triangles, Scene& scene, Oddities& oddities) {
+                                         std::size_t& triangles_left, Scene& scene, Oddities& oddities) {
   const std::string what = "node \"" + placement.node + "\", primitive " + std::to_string(placement.primitive);
   if (primitive.mode < TINYGLTF_MODE_POINTS || primitive.mode > TINYGLTF_MODE_TRIANGLE_FAN) {
     throw SceneError(what + ": unknown mode " + std::to_string(primitive.mode));
@@ -164,10 +160,8 @@ std::vector<std::uint32_t> add_primitive(const tinygltf::Model& model, const tin
     ++oddities.no_triangles;
     return {};
   }
-  if (!primitive.attributes.contains("POSITION")) throw SceneError(what + " has no POSITION");
-  const Accessor positions(model, attribute(primitive, "POSITION"), what + ", POSITION");
-  positions.require_vectors(3);
-  const std::size_t vertices = positions.count();
+  const Vertices shape(model, primitive, placement, what);
+  const std::size_t vertices = shape.count();
   const Accessor atlas =
       coordinates(model, primitive, "TEXCOORD_1", vertices, what,
                   "unwrap the scene into a second UV map without overlaps (the light map's)");
@@ -178,25 +172,18 @@ std::vector<std::uint32_t> add_primitive(const tinygltf::Model& model, const tin
     indices.emplace(model, primitive.indices, what + ", indices");
     indices->require_indices();
   }
-  const std::vector<Triangle> triangles = triangles_of(primitive, indices, vertices, max_triangles, what);
-  const std::optional<Accessor> normals = normals_of(model, primitive, triangles, vertices, what, oddities);
-
-  const double determinant = glm::determinant(glm::dmat3(placement.world));
-  const bool mirrored = determinant < 0;
-  // The inverse transpose up to a positive factor, which exists for singular matrices too.
-  const glm::dmat3 m(placement.world);
-  const double side = mirrored ? -1 : 1;
-  const glm::dmat3 cofactors(side * glm::cross(m[1], m[2]), side * glm::cross(m[2], m[0]),
-                             side * glm::cross(m[0], m[1]));
+  const std::vector<Triangle> triangles = triangles_of(primitive, indices, vertices, triangles_left, what);
+  triangles_left -= triangles.size();
+  const bool smooth = has_good_normals(shape, triangles, oddities);
 
   std::vector<std::uint32_t> result;
   std::unordered_map<std::uint32_t, std::uint32_t> shared;  // element -> vertex, where the file has normals
   for (Triangle triangle : triangles) {
-    if (mirrored) std::swap(triangle[1], triangle[2]);
+    if (shape.transform(triangle[0]).mirrored) std::swap(triangle[1], triangle[2]);
     std::array<glm::vec3, 3> p;
     std::array<glm::vec2, 3> uv;
     for (std::size_t k = 0; k < 3; ++k) {
-      p[k] = world_position(positions, triangle[k], placement.world, what);
+      p[k] = world_position(shape, triangle[k], shape.transform(triangle[k]).world, what);
       uv[k] = atlas_coordinate(atlas, triangle[k], what);
     }
     const glm::dvec3 a = glm::dvec3(p[1]) - glm::dvec3(p[0]), b = glm::dvec3(p[2]) - glm::dvec3(p[0]);
@@ -211,14 +198,14 @@ std::vector<std::uint32_t> add_primitive(const tinygltf::Model& model, const tin
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t i = triangle[k];
       const auto next = static_cast<std::uint32_t>(scene.vertices.size());
-      if (normals) {
+      if (smooth) {
         const auto [known, is_new] = shared.try_emplace(i, next);
         result.push_back(known->second);
         if (!is_new) continue;
       } else {
         result.push_back(next);
       }
-      const glm::dvec3 direction = normals ? cofactors * glm::dvec3(normals->vec3(i)) : cross;
+      const glm::dvec3 direction = smooth ? shape.transform(i).cofactors * shape.normal(i) : cross;
       const double length = glm::length(direction);
       const glm::vec2 at = colour.transform * glm::dvec3(colours ? colours->vec2(i) : glm::vec2(0), 1);
       if (!std::isfinite(at.x) || !std::isfinite(at.y)) {

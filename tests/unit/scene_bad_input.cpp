@@ -58,8 +58,6 @@ const std::vector<SpoiltCase> spoilt_cases = {
     {"UnknownMode", [](auto& b) { b.primitive(0)["mode"] = 9; }, "unknown mode 9"},
     {"HalfTriangle", [](auto& b) { b.gltf["accessors"][2]["count"] = 5; },
      "5 corners are no whole number of triangles"},
-    {"Extension", [](auto& b) { b.gltf["extensionsRequired"] = {"KHR_draco_mesh_compression"}; },
-     "KHR_draco_mesh_compression"},
     {"Cycle", [](auto& b) { b.gltf["nodes"][1]["children"] = {0}; }, "node \"floor\" is reached twice"},
     {"TwoParents",
      [](auto& b) {

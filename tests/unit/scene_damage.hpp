@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include <cstring>
 #include <filesystem>
 #include <functional>
 #include <string>
@@ -64,9 +65,8 @@ template <typename T>
 void overwrite(SceneBuilder& builder, std::size_t accessor, std::size_t element, T value) {
   const nlohmann::json& view =
       builder.gltf["bufferViews"][builder.gltf["accessors"][accessor]["bufferView"].get<std::size_t>()];
-  const auto bytes = reinterpret_cast<const char*>(&value);
-  builder.bin.replace(view["byteOffset"].get<std::size_t>() + element * sizeof value, sizeof value, bytes,
-                      sizeof value);
+  std::memcpy(&builder.bin.at(view["byteOffset"].get<std::size_t>() + element * sizeof value), &value,
+              sizeof value);
 }
 
 inline nlohmann::json& accessor_json(SceneBuilder& builder, int accessor) {
