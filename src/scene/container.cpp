@@ -4,6 +4,7 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
+#include "compression.hpp"
 #include "extensions.hpp"
 #include "lichtveld/scene/scene.hpp"
 #include "model.hpp"
@@ -129,7 +130,8 @@ std::vector<std::uint8_t> checked(std::vector<std::uint8_t> bytes, Remarks& rema
   const bool binary = bytes.size() >= 4 && std::memcmp(bytes.data(), "glTF", 4) == 0;
   json root = parse(binary ? json_chunk(bytes) : bytes);
   check_extensions(root, remarks);
-  const bool changed = complete(root);
+  const bool pointed = point_at_compressed(root);
+  const bool changed = complete(root) || pointed;
 
   const json& buffers = list(root, "buffers");
   std::uint64_t total = 0;

@@ -15,8 +15,11 @@ namespace {
 using nlohmann::json;
 
 // Those that are read, and formats of textures, of which their readers tell.
-constexpr std::array<std::string_view, 11> read_here = {"EXT_lights_image_based",
+constexpr std::array<std::string_view, 14> read_here = {"EXT_lights_image_based",
                                                         "EXT_mesh_gpu_instancing",
+                                                        "EXT_meshopt_compression",
+                                                        "KHR_meshopt_compression",
+                                                        "KHR_draco_mesh_compression",
                                                         "EXT_texture_webp",
                                                         "KHR_lights_punctual",
                                                         "KHR_materials_emissive_strength",

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <fstream>
 
+#include "compression.hpp"
 #include "lichtveld/scene/scene.hpp"
 #include "plain.hpp"
 
@@ -114,6 +115,7 @@ tinygltf::Model read_model(const fs::path& file, Remarks& remarks) {
     throw SceneError("not valid glTF: " + (error.empty() ? "unknown reason" : error));
   }
   if (!warning.empty()) remarks.add(warning);
+  decompress(model);
   make_plain(model);
   return model;
 }

@@ -18,9 +18,9 @@ namespace lichtveld::scene {
 // SceneError without the file's name.
 std::vector<std::uint8_t> checked(std::vector<std::uint8_t> bytes, Remarks& remarks);
 
-// The parsed file in plain glTF: with a scene, and each instance a node. Buffers are loaded; an image holds its
-// encoded bytes when it came by URI, and nothing when it lies in a buffer view. Throws SceneError without the
-// file's name.
+// The parsed file in plain glTF: nothing compressed, with a scene, and each instance a node. Buffers are
+// loaded; an image holds its encoded bytes when it came by URI, and nothing when it lies in a buffer view.
+// Throws SceneError without the file's name.
 tinygltf::Model read_model(const std::filesystem::path& file, Remarks& remarks);
 
 // How messages call a node: "name", or node 7 where it has none.
