@@ -188,10 +188,9 @@ void tell_of_lights(const Scene& scene) {
     spdlog::info("{}: and {} more lights", scene.file, scene.punctual.size() - most_told);
 }
 
-Scene read_scene(const std::filesystem::path& file, const LoadOptions& options) {
+Scene read_scene(const std::filesystem::path& file, const LoadOptions& options, Oddities& oddities) {
   Scene scene;
   scene.file = file.string();
-  Oddities oddities;
   const tinygltf::Model model = read_model(file, oddities.remarks);
   Materials materials = read_materials(model, oddities.remarks);
   std::vector<Piece> pieces = read_pieces(model, options, materials, scene, oddities);
@@ -222,11 +221,13 @@ Scene read_scene(const std::filesystem::path& file, const LoadOptions& options) 
 }  // namespace
 
 Scene load(const std::filesystem::path& file, const LoadOptions& options) {
+  Oddities oddities;
   try {
-    return read_scene(file, options);
+    return read_scene(file, options, oddities);
   } catch (const std::bad_alloc&) {
     throw SceneError(file.string() + ": not enough memory to read it");
-  } catch (const std::exception& e) {  // our own errors, and what tinygltf lets escape from its parser
+  } catch (const std::exception& e) {      // our own errors, and what tinygltf lets escape from its parser
+    oddities.remarks.tell(file.string());  // they may be the reason
     throw SceneError(printable(file.string() + ": " + e.what()));
   }
 }

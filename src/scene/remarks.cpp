@@ -5,6 +5,9 @@
 #include <algorithm>
 
 namespace lichtveld::scene {
+namespace {
+constexpr std::size_t most_told = 50;  // kinds: what a file names may be of as many kinds as it likes
+}
 
 std::string printable(std::string text) {
   if (text.size() > 600) text = text.substr(0, 600) + "...";
@@ -15,6 +18,10 @@ std::string printable(std::string text) {
 
 void Remarks::add(const std::string& what, const std::string& where) {
   auto found = std::ranges::find(remarks_, what, &Remark::what);
+  if (found == remarks_.end() && remarks_.size() == most_told) {
+    ++left_out_;
+    return;
+  }
   if (found == remarks_.end()) found = remarks_.insert(found, {what, where, 0});
   ++found->count;
 }
@@ -29,6 +36,7 @@ void Remarks::tell(const std::string& file) const {
     }
     spdlog::warn("{}", printable(line + remark.what));
   }
+  if (left_out_) spdlog::warn("{}: and {} more remarks", file, left_out_);
 }
 
 }  // namespace lichtveld::scene

@@ -24,6 +24,7 @@ class Remarks {
     std::size_t count = 0;
   };
   std::vector<Remark> remarks_;
+  std::size_t left_out_ = 0;  // beyond the kinds that are told
 };
 
 }  // namespace lichtveld::scene
