@@ -19,6 +19,9 @@ find_package(LibDataChannel REQUIRED)
 pkg_check_modules(OIIO REQUIRED IMPORTED_TARGET OpenImageIO)
 # Its own package files are unequal between releases, and the C library is the part that keeps its interface.
 pkg_check_modules(SPIRV_CROSS REQUIRED IMPORTED_TARGET spirv-cross-c-shared)
+find_package(draco REQUIRED)
+find_package(meshoptimizer REQUIRED)
+pkg_check_modules(WEBP REQUIRED IMPORTED_TARGET libwebp)
 find_path(TINYGLTF_INCLUDE_DIR tiny_gltf.h REQUIRED)
 find_path(STB_INCLUDE_DIR stb_rect_pack.h PATH_SUFFIXES stb REQUIRED)
 # For --capture, which says so where the header was missing. The library itself is loaded when it is asked for.

@@ -6,6 +6,7 @@
 layout(location = 0) in vec3 world_position;
 layout(location = 1) in vec3 world_normal;
 layout(location = 2) in vec2 colour_coordinate;
+layout(location = 3) in vec3 colour_factor;
 
 layout(push_constant) uniform Push { GeometryConstants constants; };
 layout(binding = 0) uniform sampler2D base_colour;
@@ -24,6 +25,7 @@ void main() {
   out_position = vec4(world_position, 1.0);
   out_normal = vec4(length_squared > 0.0 ? world_normal * inversesqrt(length_squared) : facing, 0.0);
   out_face_normal = vec4(facing, float(triangle));
-  out_albedo = vec4(clamp(constants.base_colour.rgb * texture(base_colour, colour_coordinate).rgb, 0.0, 1.0), 1.0);
+  const vec3 albedo = constants.base_colour.rgb * colour_factor * texture(base_colour, colour_coordinate).rgb;
+  out_albedo = vec4(clamp(albedo, 0.0, 1.0), 1.0);
   out_emission = vec4(constants.emission.rgb, 1.0);
 }

@@ -4,6 +4,8 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
+#include "compression.hpp"
+#include "extensions.hpp"
 #include "lichtveld/scene/scene.hpp"
 #include "model.hpp"
 
@@ -15,9 +17,6 @@ using nlohmann::json;
 constexpr int max_nesting = 64;  // JSON levels; tinygltf recurses into extras, exporters need < 20
 constexpr std::size_t max_json_bytes = 64u << 20;   // a parsed document takes several times its text
 constexpr std::size_t max_buffer_bytes = 1u << 30;  // over all buffers
-constexpr std::array known_extensions = {"KHR_materials_emissive_strength", "KHR_lights_punctual",
-                                         "EXT_lights_image_based"};
-
 std::uint32_t little_endian(std::span<const std::uint8_t> bytes, std::size_t at) {
   return bytes[at] | bytes[at + 1] << 8 | bytes[at + 2] << 16 | std::uint32_t{bytes[at + 3]} << 24;
 }
@@ -62,6 +61,7 @@ json parse(std::span<const std::uint8_t> text) {
   }
 }
 
+// The array of objects of that name, or an empty one.
 const json& list(const json& root, const char* key) {
   static const json none = json::array();
   const auto found = root.find(key);
@@ -99,20 +99,33 @@ void check_uri(const json& entry, const std::string& what) {
   }
 }
 
-void check_extensions(const json& root) {
-  const auto found = root.find("extensionsRequired");
-  if (found == root.end()) return;
-  std::string unknown;
-  for (const json& name : *found) {
-    const std::string text = name.is_string() ? name.get<std::string>() : name.dump();
-    if (std::ranges::find(known_extensions, text) == known_extensions.end())
-      unknown += (unknown.empty() ? "" : ", ") + text;
-  }
-  if (!unknown.empty()) {
-    throw SceneError("requires the extension(s) " + unknown +
-                     ", which are not supported: export without compression, "
-                     "quantisation and other required extensions");
-  }
+// tinygltf wants what glTF leaves out.
+bool complete(json& root) {
+  bool changed = false;
+  const std::size_t skins = list(root, "skins").size();
+  for (std::size_t i = 0; i < skins; ++i)
+    if (json& skin = root["skins"][i]; !skin.contains("inverseBindMatrices")) {
+      skin["inverseBindMatrices"] = -1;
+      changed = true;
+    }
+  return changed;
+}
+
+// The file with that JSON instead of its own.
+std::vector<std::uint8_t> with_json(std::span<const std::uint8_t> bytes, bool binary, const json& root) {
+  std::string text = root.dump();
+  if (!binary) return {text.begin(), text.end()};
+  text.resize((text.size() + 3) / 4 * 4, ' ');
+  const auto rest = bytes.subspan(20 + json_chunk(bytes).size());
+  std::vector<std::uint8_t> result(bytes.begin(), bytes.begin() + 20);
+  const auto put = [&](std::size_t at, std::size_t value) {
+    for (std::size_t i = 0; i < 4; ++i) result[at + i] = static_cast<std::uint8_t>(value >> (8 * i));
+  };
+  put(8, 20 + text.size() + rest.size());
+  put(12, text.size());
+  result.insert(result.end(), text.begin(), text.end());
+  result.insert(result.end(), rest.begin(), rest.end());
+  return result;
 }
 
 }  // namespace
@@ -121,10 +134,12 @@ json parse_json(std::span<const std::uint8_t> bytes) {
   return parse(is_binary(bytes) ? json_chunk(bytes) : bytes);
 }
 
-void check_container(std::span<const std::uint8_t> bytes) {
+std::vector<std::uint8_t> checked(std::vector<std::uint8_t> bytes, Remarks& remarks) {
   const bool binary = is_binary(bytes);
-  const json root = parse_json(bytes);
-  check_extensions(root);
+  json root = parse_json(bytes);
+  check_extensions(root, remarks);
+  const bool pointed = point_at_compressed(root);
+  const bool changed = complete(root) || pointed;
 
   const json& buffers = list(root, "buffers");
   std::uint64_t total = 0;
@@ -162,6 +177,7 @@ void check_container(std::span<const std::uint8_t> bytes) {
   const json& images = list(root, "images");
   for (std::size_t i = 0; i < images.size(); ++i) check_uri(images[i], "image " + std::to_string(i));
   for (const char* key : {"nodes", "meshes", "materials", "textures", "scenes"}) list(root, key);
+  return changed ? with_json(bytes, binary, root) : std::move(bytes);
 }
 
 }  // namespace lichtveld::scene

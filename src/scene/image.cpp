@@ -2,9 +2,17 @@
 
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
+#include <webp/decode.h>
+
+#include <algorithm>
+#include <string_view>
 
 namespace lichtveld::scene {
 namespace {
+
+bool holds(std::span<const unsigned char> bytes, std::size_t at, std::string_view text) {
+  return bytes.size() >= at + text.size() && std::equal(text.begin(), text.end(), bytes.begin() + at);
+}
 
 // The two formats of glTF 2.0, by their first bytes, as OpenImageIO calls them.
 const char* format_of(std::span<const unsigned char> bytes) {
@@ -14,11 +22,39 @@ const char* format_of(std::span<const unsigned char> bytes) {
   return nullptr;
 }
 
+void check_pixels(std::uint64_t pixels, std::size_t max_pixels, const std::string& what) {
+  if (pixels > max_pixels)
+    throw SceneError(what + ", of " + std::to_string(pixels) +
+                     " pixels, is too large: 64 million are allowed over all textures");
+}
+
+// By its own library: OpenImageIO multiplies colours by alpha, and the pixels of a hole are lost.
+Texture decode_webp(std::span<const unsigned char> bytes, std::size_t max_pixels, const std::string& what) {
+  WebPBitstreamFeatures features;
+  if (WebPGetFeatures(bytes.data(), bytes.size(), &features) != VP8_STATUS_OK || features.has_animation)
+    throw SceneError(what + " does not decode: a damaged or moving WebP");
+  Texture texture;
+  texture.width = static_cast<std::uint32_t>(features.width);
+  texture.height = static_cast<std::uint32_t>(features.height);
+  const std::size_t pixels = std::size_t{texture.width} * texture.height;
+  check_pixels(pixels, max_pixels, what);
+  texture.rgba.resize(4 * pixels);
+  if (!WebPDecodeRGBAInto(bytes.data(), bytes.size(), texture.rgba.data(), texture.rgba.size(),
+                          4 * features.width))
+    throw SceneError(what + " does not decode: a damaged WebP");
+  return texture;
+}
+
 }  // namespace
 
 Texture decode_image(std::span<const unsigned char> bytes, std::size_t max_pixels, const std::string& what) {
+  if (holds(bytes, 0, "RIFF") && holds(bytes, 8, "WEBP")) return decode_webp(bytes, max_pixels, what);
   const char* format = format_of(bytes);
-  if (!format) throw SceneError(what + " is neither PNG nor JPEG");
+  if (!format && holds(bytes, 1, "KTX 2"))
+    throw SceneError(what +
+                     " is a KTX2, which is not read; convert it with npx @gltf-transform/cli "
+                     "ktxdecompress in.glb out.glb");
+  if (!format) throw SceneError(what + " is no PNG, JPEG or WebP");
 
   OIIO::Filesystem::IOMemReader memory(bytes.data(), bytes.size());
   OIIO::ImageSpec config;
@@ -38,10 +74,7 @@ Texture decode_image(std::span<const unsigned char> bytes, std::size_t max_pixel
   texture.width = static_cast<std::uint32_t>(spec.width);
   texture.height = static_cast<std::uint32_t>(spec.height);
   const std::size_t pixels = std::size_t{texture.width} * texture.height;
-  if (pixels > max_pixels) {
-    throw SceneError(what + ", " + std::to_string(texture.width) + " x " + std::to_string(texture.height) +
-                     ", is too large: 64 million pixels are allowed over all textures");
-  }
+  check_pixels(pixels, max_pixels, what);
 
   const auto channels = static_cast<std::size_t>(spec.nchannels);
   std::vector<std::uint8_t> raw(pixels * channels);

@@ -8,6 +8,7 @@
 #include "lichtveld/scene/lights.hpp"
 #include "model.hpp"
 #include "parts.hpp"
+#include "skins.hpp"
 #include "sky.hpp"
 
 namespace lichtveld::scene {
@@ -81,7 +82,8 @@ std::vector<Piece> read_pieces(const tinygltf::Model& model, const LoadOptions& 
   const Owners owners = find_owners(model, nodes, scene);
   scene.punctual = read_lights(model, nodes, owners, options.lumens_per_watt);
   std::vector<Piece> pieces;
-  std::size_t triangles_left = max_triangles;
+  std::size_t triangles_left = max_triangles, primitives_left = max_triangles;
+  SkinReader skins(model, nodes, oddities.remarks);
   for (const PlacedNode& placed : nodes) {
     const tinygltf::Node& node = model.nodes[static_cast<std::size_t>(placed.node)];
     if (node.mesh == -1) continue;
@@ -89,8 +91,13 @@ std::vector<Piece> read_pieces(const tinygltf::Model& model, const LoadOptions& 
     if (node.mesh < 0 || static_cast<std::size_t>(node.mesh) >= model.meshes.size()) {
       throw SceneError("node \"" + name + "\": there is no mesh " + std::to_string(node.mesh));
     }
-    if (node.skin >= 0) spdlog::warn("{}: node \"{}\" has a skin, which is ignored", scene.file, name);
-    const auto& primitives = model.meshes[static_cast<std::size_t>(node.mesh)].primitives;
+    const auto& mesh = model.meshes[static_cast<std::size_t>(node.mesh)];
+    const auto& primitives = mesh.primitives;
+    if (primitives.size() > primitives_left)
+      throw SceneError("node \"" + name + "\": the scene has more than 4 million primitives; simplify it");
+    primitives_left -= primitives.size();
+    const auto poses =
+        node.skin == -1 ? std::span<const glm::dmat4>() : skins.poses(node.skin, "node \"" + name + "\"");
     for (std::uint32_t i = 0; i < primitives.size(); ++i) {
       const int material = primitives[i].material;
       if (material < -1 || (material >= 0 && static_cast<std::size_t>(material) >= model.materials.size())) {
@@ -104,9 +111,9 @@ std::vector<Piece> read_pieces(const tinygltf::Model& model, const LoadOptions& 
                    .body = body,
                    .light = owners.light.at(placed.light)},
                   {}};
-      piece.indices = add_primitive(model, primitives[i], {name, i, body, placed.world},
-                                    materials.colour_set[slot], triangles_left, scene, oddities);
-      triangles_left -= piece.indices.size() / 3;
+      const auto& weights = node.weights.empty() ? mesh.weights : node.weights;
+      piece.indices = add_primitive(model, primitives[i], {name, i, body, placed.world, weights, poses},
+                                    materials.colour[slot], triangles_left, scene, oddities);
       if (!piece.indices.empty()) pieces.push_back(std::move(piece));
     }
   }
@@ -132,6 +139,7 @@ void warn_of(const Scene& scene, const Oddities& oddities) {
     spdlog::warn("{}: {} primitives have unusable normals; their faces' own are used", scene.file,
                  oddities.bad_normals);
   }
+  oddities.remarks.tell(scene.file);
   if (!has_light(scene))
     spdlog::warn("{}: nothing emits light; give a material an emissiveFactor, add a light, or try --sky 1,1,1",
                  scene.file);
@@ -181,19 +189,19 @@ void tell_of_lights(const Scene& scene) {
     spdlog::info("{}: and {} more lights", scene.file, scene.punctual.size() - most_told);
 }
 
-Scene read_scene(const std::filesystem::path& file, const LoadOptions& options) {
-  tinygltf::Model model = read_model(file);
+Scene read_scene(const std::filesystem::path& file, const LoadOptions& options, Oddities& oddities) {
   Scene scene;
   scene.file = file.string();
+  tinygltf::Model model = read_model(file, oddities.remarks);
   if (auto unwrapped = unwrap(file, model, options.unwrap)) {
     if (options.unwrap.keep_uv)
       throw SceneError(unwrapped->reason + ": leave out --keep-uv, or give it charts that do not overlap");
     spdlog::info("{}: {}", scene.file, printable(summary_of(*unwrapped)));
     scene.unwrapped = std::move(unwrapped->glb);
-    model = parse_model(scene.unwrapped, file);
+    Remarks told;  // once is enough
+    model = parse_model(scene.unwrapped, file, told);
   }
-  Materials materials = read_materials(model);
-  Oddities oddities;
+  Materials materials = read_materials(model, oddities.remarks);
   std::vector<Piece> pieces = read_pieces(model, options, materials, scene, oddities);
   scene.materials = std::move(materials.materials);
   scene.textures = std::move(materials.textures);
@@ -222,7 +230,13 @@ Scene read_scene(const std::filesystem::path& file, const LoadOptions& options) 
 }  // namespace
 
 Scene load(const std::filesystem::path& file, const LoadOptions& options) {
-  return naming(file, [&] { return read_scene(file, options); });
+  Oddities oddities;
+  try {
+    return naming(file, [&] { return read_scene(file, options, oddities); });
+  } catch (const SceneError&) {
+    oddities.remarks.tell(file.string());  // they may be the reason
+    throw;
+  }
 }
 
 }  // namespace lichtveld::scene

@@ -1,13 +1,13 @@
 // The file system as tinygltf may see it, and the call of tinygltf.
 #include "model.hpp"
 
-#include <spdlog/spdlog.h>
-
 #include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "compression.hpp"
 #include "lichtveld/scene/scene.hpp"
+#include "plain.hpp"
 
 namespace lichtveld::scene {
 namespace {
@@ -95,24 +95,14 @@ Callbacks callbacks_beside(Folder& folder) {
 
 }  // namespace
 
-tinygltf::Model read_model(const fs::path& file) {
-  return parse_model(read_file(file, max_file_bytes), file);
+tinygltf::Model read_model(const fs::path& file, Remarks& remarks) {
+  return parse_model(read_file(file, max_file_bytes), file, remarks);
 }
 
-nlohmann::json read_json(const fs::path& file) {
-  return parse_json(read_file(file, max_file_bytes));
-}
+nlohmann::json read_json(const fs::path& file) { return parse_json(read_file(file, max_file_bytes)); }
 
-std::string printable(std::string text) {
-  constexpr std::size_t longest = 600;
-  if (text.size() > longest) text = text.substr(0, longest) + "...";
-  std::ranges::replace_if(
-      text, [](unsigned char c) { return c < 0x20 || c == 0x7f; }, '?');
-  return text;
-}
-
-tinygltf::Model parse_model(std::span<const std::uint8_t> bytes, const fs::path& file) {
-  check_container(bytes);
+tinygltf::Model parse_model(std::vector<std::uint8_t> contents, const fs::path& file, Remarks& remarks) {
+  const std::vector<std::uint8_t> bytes = checked(std::move(contents), remarks);
 
   Folder folder{file.has_parent_path() ? file.parent_path() : fs::path(".")};
   tinygltf::TinyGLTF reader;
@@ -131,7 +121,9 @@ tinygltf::Model parse_model(std::span<const std::uint8_t> bytes, const fs::path&
     std::ranges::replace(error, '\n', ' ');
     throw SceneError("not valid glTF: " + (error.empty() ? "unknown reason" : error));
   }
-  if (!warning.empty()) spdlog::warn("{}: {}", file.string(), warning);
+  if (!warning.empty()) remarks.add(warning);
+  decompress(model);
+  make_plain(model);
   return model;
 }
 

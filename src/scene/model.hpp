@@ -9,29 +9,31 @@
 #include <nlohmann/json_fwd.hpp>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "lichtveld/scene/scene.hpp"
+#include "remarks.hpp"
 
 namespace lichtveld::scene {
 
-// Refuses what tinygltf would read past, hang on or silently take for zero: chunk lengths of a .glb, JSON that
-// nests too deeply, buffer views outside their buffer, offsets that are no counts, URIs that leave the folder,
-// required extensions that we do not know. Throws SceneError without the file's name.
-void check_container(std::span<const std::uint8_t> bytes);
+// The file as tinygltf can read it. Refuses what tinygltf would read past, hang on or silently take for zero:
+// chunk lengths of a .glb, JSON that nests too deeply, buffer views outside their buffer, offsets that are no
+// counts, URIs that leave the folder, and required extensions that geometry cannot be had without. Throws
+// SceneError without the file's name.
+std::vector<std::uint8_t> checked(std::vector<std::uint8_t> bytes, Remarks& remarks);
 
-// The parsed file. Buffers are loaded; an image holds its encoded bytes when it came by URI, and nothing when
-// it lies in a buffer view. Throws SceneError without the file's name.
-tinygltf::Model read_model(const std::filesystem::path& file);
+// The parsed file in plain glTF: nothing compressed, with a scene, and each instance a node. Buffers are
+// loaded; an image holds its encoded bytes when it came by URI, and nothing when it lies in a buffer view.
+// Throws SceneError without the file's name.
+tinygltf::Model read_model(const std::filesystem::path& file, Remarks& remarks);
 
 // The same of a file's bytes; what it names lies beside `file`.
-tinygltf::Model parse_model(std::span<const std::uint8_t> bytes, const std::filesystem::path& file);
+tinygltf::Model parse_model(std::vector<std::uint8_t> bytes, const std::filesystem::path& file,
+                            Remarks& remarks);
 
 // The JSON of a file that was read, or of its bytes.
 nlohmann::json read_json(const std::filesystem::path& file);
 nlohmann::json parse_json(std::span<const std::uint8_t> bytes);
-
-// A message with nothing in it that could harm a terminal: names in a file are anybody's text.
-std::string printable(std::string text);
 
 // What read() gives; what it throws, our own errors and what tinygltf lets escape from its parser, as
 // SceneError with the file's name.

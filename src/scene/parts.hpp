@@ -11,19 +11,20 @@
 #include <string>
 #include <vector>
 
-#include "accessor.hpp"
 #include "lichtveld/scene/scene.hpp"
 #include "lichtveld/scene/unwrap.hpp"
+#include "remarks.hpp"
+#include "textures.hpp"
 
 namespace lichtveld::scene {
 
 struct Materials {
-  std::vector<Material> materials;  // as in the file, and behind them glTF's default material
-  std::vector<Texture> textures;    // those that a base colour asks for
-  std::vector<int> colour_set;      // a material's TEXCOORD set for its texture, or -1
+  std::vector<Material> materials;         // as in the file, and behind them glTF's default material
+  std::vector<Texture> textures;           // those that a base colour asks for
+  std::vector<TextureCoordinates> colour;  // where a material's texture is read
 };
 
-Materials read_materials(const tinygltf::Model& model);
+Materials read_materials(const tinygltf::Model& model, Remarks& remarks);
 
 // A node of the scene. Nodes come in the order of the file.
 struct PlacedNode {
@@ -63,35 +64,35 @@ inline constexpr float atlas_rounding = 0.01f;
 
 using Triangle = std::array<std::uint32_t, 3>;  // elements of a primitive's accessors
 
-// The triangles of a primitive, of lists, strips and fans, of which there are at most `max_triangles`; nothing
-// for points and lines. `what` names it in messages.
-struct Shape {
-  Accessor positions;
-  std::vector<Triangle> triangles;
-};
-std::optional<Shape> shape_of(const tinygltf::Model& model, const tinygltf::Primitive& primitive,
-                              std::size_t max_triangles, const std::string& what);
+// The triangles of a primitive, of lists, strips and fans; nothing for points and lines. `what` names it in
+// messages. Takes what it reads from `triangles_left`, and throws SceneError where that is not enough.
+std::optional<std::vector<Triangle>> triangles_of(const tinygltf::Model& model,
+                                                  const tinygltf::Primitive& primitive,
+                                                  std::size_t& triangles_left, const std::string& what);
 
 // unwrap() of a file whose model is read already; nothing where its own TEXCOORD_1 stays.
 std::optional<Unwrapped> unwrap(const std::filesystem::path& file, const tinygltf::Model& model,
                                 const UnwrapOptions& options);
 
-// What was odd but harmless, counted over all primitives.
+// What was odd but harmless, over all primitives.
 struct Oddities {
   std::size_t zero_area = 0, zero_chart = 0, outside_atlas = 0, no_triangles = 0, bad_normals = 0;
+  Remarks remarks;
 };
 
-// Where a primitive stands.
+// Where a primitive stands, and in which shape.
 struct Placement {
   std::string node;
   std::uint32_t primitive = 0, body = 0;
   glm::dmat4 world{1};
+  std::span<const double> weights = {};    // of its morph targets; of those that it does not name, 0
+  std::span<const glm::dmat4> poses = {};  // of its skin's joints, which stand for `world`
 };
 
-// Appends a primitive's vertices to scene.vertices and returns its triangles' indices into them, of
-// which there are at most `max_triangles`. `colour_set` as in Materials.
+// Appends a primitive's vertices to scene.vertices and returns its triangles' indices into them. `colour` as in
+// Materials. Takes what it reads from `triangles_left`, and throws SceneError where that is not enough.
 std::vector<std::uint32_t> add_primitive(const tinygltf::Model& model, const tinygltf::Primitive& primitive,
-                                         const Placement& placement, int colour_set, std::size_t max_triangles,
-                                         Scene& scene, Oddities& oddities);
+                                         const Placement& placement, const TextureCoordinates& colour,
+                                         std::size_t& triangles_left, Scene& scene, Oddities& oddities);
 
 }  // namespace lichtveld::scene

@@ -1,8 +1,10 @@
 #include "plain_file.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <limits>
+#include <numeric>
 
 #include "accessor.hpp"
 #include "lichtveld/scene/scene.hpp"
@@ -12,6 +14,9 @@ namespace {
 
 using nlohmann::json;
 
+constexpr std::array gone = {"KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_meshopt_compression",
+                            "EXT_mesh_gpu_instancing"};
+
 constexpr std::uint32_t json_chunk_type = 0x4e4f534a, binary_chunk_type = 0x004e4942;
 
 void append(PlainFile::Bytes& to, std::uint32_t value) {
@@ -20,11 +25,6 @@ void append(PlainFile::Bytes& to, std::uint32_t value) {
 
 void pad(PlainFile::Bytes& bytes, unsigned char with) {
   while (bytes.size() % 4 != 0) bytes.push_back(with);
-}
-
-// What a chunk of indices or vertices is for, which readers may use to place it.
-int target_of(const std::string& semantic) {
-  return semantic.empty() ? 0 : TINYGLTF_TARGET_ARRAY_BUFFER;
 }
 
 std::string mime_type_of(std::span<const unsigned char> bytes) {
@@ -57,8 +57,48 @@ void state_range(json& description, const PlainFile::Bytes& bytes, std::size_t s
 
 }  // namespace
 
+json without_compression(json primitive) {
+  if (!primitive.contains("extensions")) return primitive;
+  primitive["extensions"].erase("KHR_draco_mesh_compression");
+  if (primitive["extensions"].empty()) primitive.erase("extensions");
+  return primitive;
+}
+
 PlainFile::PlainFile(json root, const tinygltf::Model& model)
-    : root_(std::move(root)), model_(model), is_new_(model.nodes.size()) {}
+    : root_(std::move(root)), model_(model), is_new_(model.nodes.size()) {
+  take_nodes();
+}
+
+// What reading made of the nodes: instances are children of their node, and a scene is there.
+void PlainFile::take_nodes() {
+  json& nodes = root_["nodes"];
+  const auto put = [](json& node, const char* key, const std::vector<double>& numbers) {
+    if (!numbers.empty()) node[key] = numbers;
+  };
+  const std::size_t in_file = nodes.size();
+  for (std::size_t i = in_file; i < model_.nodes.size(); ++i) {
+    const auto& in = model_.nodes[i];
+    json node = {{"name", in.name}};
+    put(node, "translation", in.translation);
+    put(node, "rotation", in.rotation);
+    put(node, "scale", in.scale);
+    put(node, "weights", in.weights);
+    if (in.mesh >= 0) node["mesh"] = in.mesh;
+    nodes.push_back(std::move(node));
+  }
+  for (std::size_t i = 0; i < in_file; ++i) {
+    json& node = nodes[i];
+    const auto& in = model_.nodes[i];
+    if (!in.children.empty()) node["children"] = in.children;
+    if (in.mesh < 0) node.erase("mesh");
+    if (!node.contains("extensions")) continue;
+    node["extensions"].erase("EXT_mesh_gpu_instancing");
+    if (node["extensions"].empty()) node.erase("extensions");
+  }
+  if (root_.contains("scenes")) return;
+  root_["scenes"] = json::array({{{"nodes", model_.scenes.at(0).nodes}}});
+  root_["scene"] = 0;
+}
 
 int PlainFile::add_view(const Bytes& bytes, int target, std::size_t stride) {
   pad(binary_, 0);
@@ -76,21 +116,34 @@ int PlainFile::add_accessor(json description, const Bytes& bytes, int target, st
   return static_cast<int>(accessors_.size()) - 1;
 }
 
-int PlainFile::carried(int accessor) {
+json PlainFile::described(int accessor) const {
+  const auto& in = model_.accessors.at(static_cast<std::size_t>(accessor));
+  static const std::map<int, const char*> types = {
+      {TINYGLTF_TYPE_SCALAR, "SCALAR"}, {TINYGLTF_TYPE_VEC2, "VEC2"}, {TINYGLTF_TYPE_VEC3, "VEC3"},
+      {TINYGLTF_TYPE_VEC4, "VEC4"},     {TINYGLTF_TYPE_MAT2, "MAT2"}, {TINYGLTF_TYPE_MAT3, "MAT3"},
+      {TINYGLTF_TYPE_MAT4, "MAT4"}};
+  json result = {{"componentType", in.componentType}, {"count", in.count}, {"type", types.at(in.type)}};
+  if (in.normalized) result["normalized"] = true;
+  if (!in.name.empty()) result["name"] = in.name;
+  return result;
+}
+
+int PlainFile::carried(int accessor, int target) {
   if (const auto known = carried_.find(accessor); known != carried_.end()) return known->second;
   const Accessor in(model_, accessor, "the file");
-  json description = root_["accessors"][static_cast<std::size_t>(accessor)];
-  for (const char* gone : {"bufferView", "byteOffset", "sparse"}) description.erase(gone);
+  json description = described(accessor);
+  const auto& was = model_.accessors[static_cast<std::size_t>(accessor)];
+  if (!was.minValues.empty()) description["min"] = was.minValues;
+  if (!was.maxValues.empty()) description["max"] = was.maxValues;
   const std::size_t element = in.element_bytes();
   Bytes bytes(in.count() * element);
   for (std::size_t i = 0; i < in.count(); ++i) std::memcpy(&bytes[i * element], in.element(i), element);
-  return carried_[accessor] = add_accessor(std::move(description), bytes, 0, element);
+  return carried_[accessor] = add_accessor(std::move(description), bytes, target, element);
 }
 
 int PlainFile::chosen(int accessor, std::span<const std::uint32_t> elements, const std::string& semantic) {
   const Accessor in(model_, accessor, semantic);
-  json description = root_["accessors"][static_cast<std::size_t>(accessor)];
-  for (const char* gone : {"bufferView", "byteOffset", "sparse", "min", "max"}) description.erase(gone);
+  json description = described(accessor);
   description["count"] = elements.size();
   const std::size_t element = in.element_bytes(), stride = (element + 3) / 4 * 4;
   Bytes bytes(elements.size() * stride);
@@ -99,7 +152,7 @@ int PlainFile::chosen(int accessor, std::span<const std::uint32_t> elements, con
     std::memcpy(&bytes[i * stride], in.element(elements[i]), element);
   }
   if (semantic == "POSITION") state_range(description, bytes, stride);
-  return add_accessor(std::move(description), bytes, target_of(semantic), stride);
+  return add_accessor(std::move(description), bytes, TINYGLTF_TARGET_ARRAY_BUFFER, stride);
 }
 
 int PlainFile::add_vectors(std::span<const float> numbers, std::size_t components, const char* type) {
@@ -139,14 +192,25 @@ void PlainFile::show(std::size_t node, int mesh) {
 
 int PlainFile::carried_mesh(int mesh) {
   if (const auto known = carried_meshes_.find(mesh); known != carried_meshes_.end()) return known->second;
+  const auto& in = model_.meshes.at(static_cast<std::size_t>(mesh));
   json copy = root_["meshes"].at(static_cast<std::size_t>(mesh));
-  for (json& primitive : copy["primitives"]) {
-    if (primitive.contains("extensions")) primitive["extensions"].erase("KHR_draco_mesh_compression");
-    if (primitive.contains("indices")) primitive["indices"] = carried(primitive["indices"].get<int>());
-    for (auto& [semantic, accessor] : primitive["attributes"].items()) accessor = carried(accessor.get<int>());
-    if (primitive.contains("targets"))
-      for (json& target : primitive["targets"])
-        for (auto& [semantic, accessor] : target.items()) accessor = carried(accessor.get<int>());
+  for (std::size_t i = 0; i < in.primitives.size(); ++i) {
+    const auto& primitive = in.primitives[i];
+    json out = without_compression(copy["primitives"].at(i));
+    if (primitive.indices >= 0) out["indices"] = carried(primitive.indices, TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER);
+    out["attributes"] = json::object();
+    const auto whole = [&](int accessor, const std::string& semantic) {
+      const auto [known, is_new] = carried_vertices_.try_emplace(accessor);
+      if (!is_new) return known->second;
+      std::vector<std::uint32_t> all(model_.accessors.at(static_cast<std::size_t>(accessor)).count);
+      std::iota(all.begin(), all.end(), 0u);
+      return known->second = chosen(accessor, all, semantic);
+    };
+    for (const auto& [semantic, accessor] : primitive.attributes) out["attributes"][semantic] = whole(accessor, semantic);
+    for (std::size_t t = 0; t < primitive.targets.size(); ++t)
+      for (const auto& [semantic, accessor] : primitive.targets[t])
+        out["targets"][t][semantic] = whole(accessor, semantic);
+    copy["primitives"][i] = std::move(out);
   }
   return carried_meshes_[mesh] = add_mesh(std::move(copy));
 }
@@ -195,7 +259,7 @@ PlainFile::Bytes PlainFile::finish() {
     if (!root_.contains(key)) continue;
     json left = json::array();
     for (const json& name : root_[key])
-      if (name != "KHR_draco_mesh_compression" && name != "EXT_meshopt_compression") left.push_back(name);
+      if (std::ranges::find(gone, name) == gone.end()) left.push_back(name);
     if (left.empty())
       root_.erase(key);
     else

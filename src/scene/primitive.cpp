@@ -2,11 +2,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <glm/gtc/packing.hpp>
 #include <optional>
 #include <unordered_map>
 
 #include "accessor.hpp"
 #include "parts.hpp"
+#include "vertices.hpp"
 
 namespace lichtveld::scene {
 namespace {
@@ -14,9 +16,6 @@ namespace {
 // A triangle whose height is less than this share of its longest edge has no normal worth the name: a 32-bit
 // coordinate as long as the edge is rounded by as much.
 constexpr double flat_share = 1e-7;
-
-// Farther out, 32-bit positions are coarser than 6 cm; such scenes have their unit wrong.
-constexpr double max_coordinate = 1e6;
 
 std::vector<Triangle> triangles_of(const tinygltf::Primitive& primitive, const std::optional<Accessor>& indices,
                                    std::size_t vertices, std::size_t max_triangles, const std::string& what) {
@@ -65,21 +64,15 @@ Accessor coordinates(const tinygltf::Model& model, const tinygltf::Primitive& pr
   const int index = attribute(primitive, name);
   if (!primitive.attributes.contains(name)) throw SceneError(what + " has no " + name + ": " + advice);
   Accessor result(model, index, what + ", " + name);
-  result.require_vec2();
+  result.require_vectors(2);
   if (result.count() < vertices) throw SceneError(what + ": " + name + " has fewer elements than POSITION");
   return result;
 }
 
-glm::vec3 world_position(const Accessor& positions, std::uint32_t i, const glm::dmat4& world,
+glm::vec3 world_position(const Vertices& vertices, std::uint32_t i, const glm::dmat4& world,
                          const std::string& what) {
-  const glm::dvec3 p = world * glm::dvec4(positions.vec3(i), 1);
-  for (int c = 0; c < 3; ++c) {
-    if (!(std::abs(p[c]) <= max_coordinate)) {
-      throw SceneError(what + ": vertex " + std::to_string(i) +
-                       " is not finite or more than 1000 km away; positions are "
-                       "in metres");
-    }
-  }
+  const glm::dvec3 p = world * glm::dvec4(vertices.position(i), 1);
+  check_place(p, i, what);
   return p;
 }
 
@@ -96,83 +89,100 @@ glm::vec2 atlas_coordinate(const Accessor& atlas, std::uint32_t i, const std::st
   return inside;
 }
 
-// The normals of a primitive, or nothing where faces have to stand in for them.
-std::optional<Accessor> normals_of(const tinygltf::Model& model, const tinygltf::Primitive& primitive,
-                                   const std::vector<Triangle>& triangles, std::size_t vertices,
-                                   const std::string& what, Oddities& oddities) {
-  if (!primitive.attributes.contains("NORMAL")) return std::nullopt;
-  Accessor normals(model, attribute(primitive, "NORMAL"), what + ", NORMAL");
-  normals.require_vec3();
-  if (normals.count() < vertices) throw SceneError(what + ": NORMAL has fewer elements than POSITION");
+// What the texture is read by. Where the primitive lacks that set, viewers take (0, 0).
+std::optional<Accessor> colours_of(const tinygltf::Model& model, const tinygltf::Primitive& primitive, int set,
+                                   std::size_t vertices, const std::string& what, Oddities& oddities) {
+  if (set < 0) return std::nullopt;
+  const std::string name = "TEXCOORD_" + std::to_string(set);
+  if (!primitive.attributes.contains(name)) {
+    oddities.remarks.add("has no " + name + " for its texture, whose corner colours it all", what);
+    return std::nullopt;
+  }
+  return coordinates(model, primitive, name, vertices, what, "");
+}
+
+// COLOR_0.
+std::optional<Accessor> tints_of(const tinygltf::Model& model, const tinygltf::Primitive& primitive,
+                                 std::size_t vertices, const std::string& what) {
+  if (!primitive.attributes.contains("COLOR_0")) return std::nullopt;
+  Accessor tints(model, attribute(primitive, "COLOR_0"), what + ", COLOR_0");
+  tints.require_vectors(tints.components() == 3 ? 3 : 4);
+  if (tints.count() < vertices) throw SceneError(what + ": COLOR_0 has fewer elements than POSITION");
+  return tints;
+}
+
+// Vertex::tint, which takes whatever 8 or 16 bits hold as it is.
+glm::u16vec4 tint_of(const std::optional<Accessor>& tints, std::uint32_t i, const std::string& what) {
+  if (!tints) return glm::u16vec4(65535);
+  const glm::vec4 tint = tints->components() == 3 ? glm::vec4(tints->vec3(i), 1) : tints->vec4(i);
+  for (int c = 0; c < 4; ++c)
+    if (!std::isfinite(tint[c]))
+      throw SceneError(what + ": COLOR_0 of vertex " + std::to_string(i) + " is not finite");
+  return glm::packUnorm<std::uint16_t>(glm::clamp(tint, 0.0f, 1.0f));
+}
+
+// Whether the primitive has normals that can be used; faces' own stand in for them where not.
+bool has_good_normals(const Vertices& vertices, const std::vector<Triangle>& triangles, Oddities& oddities) {
+  if (!vertices.has_normals()) return false;
   for (const Triangle& triangle : triangles) {
     for (std::uint32_t i : triangle) {
-      const double length = glm::length(glm::dvec3(normals.vec3(i)));
+      const double length = glm::length(vertices.normal(i));
       if (!(length > 1e-6 && length < 1e6)) {
         ++oddities.bad_normals;
-        return std::nullopt;
+        return false;
       }
     }
   }
-  return normals;
+  return true;
 }
 
 }  // namespace
 
-std::optional<Shape> shape_of(const tinygltf::Model& model, const tinygltf::Primitive& primitive,
-                              std::size_t max_triangles, const std::string& what) {
+std::optional<std::vector<Triangle>> triangles_of(const tinygltf::Model& model,
+                                                  const tinygltf::Primitive& primitive,
+                                                  std::size_t& triangles_left, const std::string& what) {
   if (primitive.mode < TINYGLTF_MODE_POINTS || primitive.mode > TINYGLTF_MODE_TRIANGLE_FAN) {
     throw SceneError(what + ": unknown mode " + std::to_string(primitive.mode));
   }
   if (primitive.mode < TINYGLTF_MODE_TRIANGLES) return std::nullopt;
   if (!primitive.attributes.contains("POSITION")) throw SceneError(what + " has no POSITION");
-  Shape shape{Accessor(model, attribute(primitive, "POSITION"), what + ", POSITION"), {}};
-  shape.positions.require_vec3();
+  const std::size_t vertices = Accessor(model, attribute(primitive, "POSITION"), what + ", POSITION").count();
   std::optional<Accessor> indices;
   if (primitive.indices != -1) {
     indices.emplace(model, primitive.indices, what + ", indices");
     indices->require_indices();
   }
-  shape.triangles = triangles_of(primitive, indices, shape.positions.count(), max_triangles, what);
-  return shape;
+  auto triangles = triangles_of(primitive, indices, vertices, triangles_left, what);
+  triangles_left -= triangles.size();
+  return triangles;
 }
 
 std::vector<std::uint32_t> add_primitive(const tinygltf::Model& model, const tinygltf::Primitive& primitive,
-                                         const Placement& placement, int colour_set, std::size_t max_triangles,
-                                         Scene& scene, Oddities& oddities) {
+                                         const Placement& placement, const TextureCoordinates& colour,
+                                         std::size_t& triangles_left, Scene& scene, Oddities& oddities) {
   const std::string what = "node \"" + placement.node + "\", primitive " + std::to_string(placement.primitive);
-  const auto shape = shape_of(model, primitive, max_triangles, what);
-  if (!shape) {
+  const auto triangles = triangles_of(model, primitive, triangles_left, what);
+  if (!triangles) {
     ++oddities.no_triangles;
     return {};
   }
-  const auto& [positions, triangles] = *shape;
-  const std::size_t vertices = positions.count();
+  const Vertices shape(model, primitive, placement, what);
+  const std::size_t vertices = shape.count();
   const Accessor atlas =
       coordinates(model, primitive, "TEXCOORD_1", vertices, what,
                   "unwrap the scene into a second UV map without overlaps (the light map's)");
-  std::optional<Accessor> colours;
-  if (colour_set >= 0) {
-    colours = coordinates(model, primitive, "TEXCOORD_" + std::to_string(colour_set), vertices, what,
-                          "its baseColorTexture asks for it");
-  }
-  const std::optional<Accessor> normals = normals_of(model, primitive, triangles, vertices, what, oddities);
-
-  const double determinant = glm::determinant(glm::dmat3(placement.world));
-  const bool mirrored = determinant < 0;
-  // The inverse transpose up to a positive factor, which exists for singular matrices too.
-  const glm::dmat3 m(placement.world);
-  const double side = mirrored ? -1 : 1;
-  const glm::dmat3 cofactors(side * glm::cross(m[1], m[2]), side * glm::cross(m[2], m[0]),
-                             side * glm::cross(m[0], m[1]));
+  const std::optional<Accessor> colours = colours_of(model, primitive, colour.set, vertices, what, oddities);
+  const std::optional<Accessor> tints = tints_of(model, primitive, vertices, what);
+  const bool smooth = has_good_normals(shape, *triangles, oddities);
 
   std::vector<std::uint32_t> result;
   std::unordered_map<std::uint32_t, std::uint32_t> shared;  // element -> vertex, where the file has normals
-  for (Triangle triangle : triangles) {
-    if (mirrored) std::swap(triangle[1], triangle[2]);
+  for (Triangle triangle : *triangles) {
+    if (shape.transform(triangle[0]).mirrored) std::swap(triangle[1], triangle[2]);
     std::array<glm::vec3, 3> p;
     std::array<glm::vec2, 3> uv;
     for (std::size_t k = 0; k < 3; ++k) {
-      p[k] = world_position(positions, triangle[k], placement.world, what);
+      p[k] = world_position(shape, triangle[k], shape.transform(triangle[k]).world, what);
       uv[k] = atlas_coordinate(atlas, triangle[k], what, oddities);
     }
     const glm::dvec3 a = glm::dvec3(p[1]) - glm::dvec3(p[0]), b = glm::dvec3(p[2]) - glm::dvec3(p[0]);
@@ -187,22 +197,22 @@ std::vector<std::uint32_t> add_primitive(const tinygltf::Model& model, const tin
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t i = triangle[k];
       const auto next = static_cast<std::uint32_t>(scene.vertices.size());
-      if (normals) {
+      if (smooth) {
         const auto [known, is_new] = shared.try_emplace(i, next);
         result.push_back(known->second);
         if (!is_new) continue;
       } else {
         result.push_back(next);
       }
-      const glm::dvec3 direction = normals ? cofactors * glm::dvec3(normals->vec3(i)) : cross;
+      const glm::dvec3 direction = smooth ? shape.transform(i).cofactors * shape.normal(i) : cross;
       const double length = glm::length(direction);
-      const glm::vec2 colour = colours ? colours->vec2(i) : glm::vec2(0);
-      if (!std::isfinite(colour.x) || !std::isfinite(colour.y)) {
+      const glm::vec2 at = colour.transform * glm::dvec3(colours ? colours->vec2(i) : glm::vec2(0), 1);
+      if (!std::isfinite(at.x) || !std::isfinite(at.y)) {
         throw SceneError(what + ": the texture coordinate of vertex " + std::to_string(i) + " is not finite");
       }
       // A flattening node can leave a normal without length; the face's own is right then.
-      scene.vertices.push_back(
-          {p[k], glm::normalize(length > 0 ? direction : cross), uv[k], colour, placement.body});
+      scene.vertices.push_back({p[k], glm::normalize(length > 0 ? direction : cross), uv[k], at, placement.body,
+                                tint_of(tints, i, what)});
     }
   }
   return result;

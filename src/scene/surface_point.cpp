@@ -1,7 +1,9 @@
 #include "lichtveld/scene/surface_point.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <glm/gtc/packing.hpp>
 
 namespace lichtveld::scene {
 namespace {
@@ -29,19 +31,36 @@ struct Between {
   float share;
 };
 
-Between between(float coordinate, std::uint32_t pixels) {
-  // Repeats first, so that coordinates far out keep what precision they have.
-  const double repeated = double{coordinate} - std::floor(double{coordinate});
-  const double at = repeated * pixels - 0.5;
+// The coordinate in 0..1 that stands for one outside. First of all, so that coordinates far out keep what
+// precision they have.
+double wrapped(double coordinate, Wrap wrap) {
+  switch (wrap) {
+    case Wrap::repeat:
+      return coordinate - std::floor(coordinate);
+    case Wrap::mirror:
+      return 1 - std::abs(coordinate - 2 * std::floor(coordinate / 2) - 1);
+    default:
+      return std::clamp(coordinate, 0.0, 1.0);
+  }
+}
+
+Between between(float coordinate, std::uint32_t pixels, Wrap wrap) {
+  const double at = wrapped(coordinate, wrap) * pixels - 0.5;
   const double below = std::floor(at);
-  const auto first = static_cast<std::uint32_t>(below + pixels) % pixels;
-  return {first, (first + 1) % pixels, static_cast<float>(at - below)};
+  // From -1 to pixels - 1; beyond the last pixel is the first one, or what a mirror shows of the last.
+  const auto first = static_cast<std::int64_t>(below), last = std::int64_t{pixels} - 1;
+  const auto pixel_at = [&](std::int64_t i) {
+    const std::int64_t inside =
+        wrap == Wrap::repeat ? (i + pixels) % pixels : std::clamp<std::int64_t>(i, 0, last);
+    return static_cast<std::uint32_t>(inside);
+  };
+  return {pixel_at(first), pixel_at(first + 1), static_cast<float>(at - below)};
 }
 
 }  // namespace
 
-glm::vec3 sample_srgb(const Texture& texture, glm::vec2 at) {
-  const Between x = between(at.x, texture.width), y = between(at.y, texture.height);
+glm::vec3 sample_srgb(const Texture& texture, glm::vec2 at, std::array<Wrap, 2> wrap) {
+  const Between x = between(at.x, texture.width, wrap[0]), y = between(at.y, texture.height, wrap[1]);
   const glm::vec3 upper =
       glm::mix(pixel(texture, x.first, y.first), pixel(texture, x.second, y.first), x.share);
   const glm::vec3 lower =
@@ -60,14 +79,19 @@ glm::vec3 weights(const SurfacePoint& point) {
 }
 
 glm::vec3 albedo_at(const Scene& scene, const Material& material, const SurfacePoint& point) {
-  if (material.texture < 0) return material.base_colour;
   const glm::vec3 w = weights(point);
-  const auto coordinate = [&](std::size_t corner) {
-    return scene.vertices[scene.indices[std::size_t{3} * point.triangle + corner]].colour;
-  };
-  const glm::vec2 at = w.x * coordinate(0) + w.y * coordinate(1) + w.z * coordinate(2);
-  const auto& texture = scene.textures[static_cast<std::size_t>(material.texture)];
-  return glm::clamp(material.base_colour * sample_srgb(texture, at), 0.0f, 1.0f);
+  glm::vec2 at(0);
+  glm::vec3 tint(0);
+  for (int corner = 0; corner < 3; ++corner) {
+    const std::size_t index = std::size_t{3} * point.triangle + static_cast<std::size_t>(corner);
+    const Vertex& vertex = scene.vertices[scene.indices[index]];
+    at += w[corner] * vertex.colour;
+    tint += w[corner] * glm::vec3(glm::unpackUnorm<float>(vertex.tint));
+  }
+  glm::vec3 result = material.base_colour * tint;
+  if (material.texture >= 0)
+    result *= sample_srgb(scene.textures[static_cast<std::size_t>(material.texture)], at, material.wrap);
+  return glm::clamp(result, 0.0f, 1.0f);
 }
 
 }  // namespace lichtveld::scene

@@ -18,7 +18,9 @@
 #include "pack.hpp"
 #include "parts.hpp"
 #include "plain_file.hpp"
+#include "skins.hpp"
 #include "sky.hpp"
+#include "vertices.hpp"
 
 namespace lichtveld::scene {
 namespace {
@@ -54,7 +56,8 @@ struct Use {
   int node = 0;
   std::string name;
   glm::dmat4 world{1};
-  double density = 1;  // extras.texels
+  double density = 1;         // extras.texels
+  std::vector<double> posed;  // of a skin: the area of each sheet [m2]
 };
 
 // A mesh, and the nodes of the scene that show it.
@@ -81,15 +84,16 @@ std::vector<std::array<glm::vec2, 3>> own_atlas(const tinygltf::Model& model,
   const int index = attribute_of(primitive, "TEXCOORD_1");
   if (index < 0) return {};
   const Accessor atlas(model, index, sheet.what + ", TEXCOORD_1");
-  atlas.require_vec2();
+  atlas.require_vectors(2);
   if (atlas.count() < vertices) return {};
   std::vector<std::array<glm::vec2, 3>> own;
   for (const auto& t : sheet.triangles) own.push_back({atlas.vec2(t[0]), atlas.vec2(t[1]), atlas.vec2(t[2])});
   return own;
 }
 
+// The sheets of a mesh in the shape that a node gives it by its weights.
 std::vector<Sheet> sheets_of(const tinygltf::Model& model, int mesh, const std::string& name,
-                             std::size_t& triangles_left) {
+                             std::span<const double> weights, std::size_t& triangles_left) {
   const auto& primitives = model.meshes[static_cast<std::size_t>(mesh)].primitives;
   std::vector<Sheet> sheets;
   for (std::size_t i = 0; i < primitives.size(); ++i) {
@@ -97,22 +101,19 @@ std::vector<Sheet> sheets_of(const tinygltf::Model& model, int mesh, const std::
     Sheet sheet;
     sheet.primitive = i;
     sheet.what = "node " + in_quotes(name) + ", primitive " + std::to_string(i);
-    auto shape = shape_of(model, primitive, triangles_left, sheet.what);
-    if (!shape) continue;
-    triangles_left -= shape->triangles.size();
+    auto triangles = triangles_of(model, primitive, triangles_left, sheet.what);
+    if (!triangles) continue;
+    const Vertices vertices(model, primitive, {.node = name, .weights = weights}, sheet.what);
     sheet.double_sided = primitive.material >= 0 &&
                          static_cast<std::size_t>(primitive.material) < model.materials.size() &&
                          model.materials[static_cast<std::size_t>(primitive.material)].doubleSided;
-    sheet.triangles = std::move(shape->triangles);
+    sheet.triangles = std::move(*triangles);
     sheet.fronts = sheet.triangles.size();
     for (const auto& t : sheet.triangles)
-      sheet.corners.push_back(
-          {shape->positions.vec3(t[0]), shape->positions.vec3(t[1]), shape->positions.vec3(t[2])});
-    for (const auto& corners : sheet.corners)
-      for (const auto& place : corners)
-        if (!std::isfinite(place.x + place.y + place.z))
-          throw SceneError(sheet.what + ": a position is not finite; positions are in metres");
-    sheet.own = own_atlas(model, primitive, sheet, shape->positions.count());
+      sheet.corners.push_back({vertices.position(t[0]), vertices.position(t[1]), vertices.position(t[2])});
+    for (std::size_t t = 0; t < sheet.triangles.size(); ++t)
+      for (std::size_t k = 0; k < 3; ++k) check_place(sheet.corners[t][k], sheet.triangles[t][k], sheet.what);
+    sheet.own = own_atlas(model, primitive, sheet, vertices.count());
     sheets.push_back(std::move(sheet));
   }
   return sheets;
@@ -127,34 +128,70 @@ double density_of(const tinygltf::Node& node, const std::string& name) {
   return density;
 }
 
-Meshes used_meshes(const tinygltf::Model& model) {
-  Meshes meshes;
-  std::size_t triangles_left = max_triangles;
-  for (const PlacedNode& placed : place_nodes(model, {})) {
-    const auto& node = model.nodes[static_cast<std::size_t>(placed.node)];
-    if (node.mesh < 0 || static_cast<std::size_t>(node.mesh) >= model.meshes.size()) continue;
-    const std::string name = node_name(model, placed.node);
-    auto& mesh = meshes[node.mesh];
-    if (mesh.uses.empty()) mesh.sheets = sheets_of(model, node.mesh, name, triangles_left);
-    mesh.uses.push_back({placed.node, name, placed.world, density_of(node, name)});
-  }
-  return meshes;
-}
-
 Corners in_world(const Corners& corners, const glm::dmat4& world) {
   Corners result;
   for (std::size_t k = 0; k < 3; ++k) result[k] = glm::vec3(world * glm::dvec4(corners[k], 1));
   return result;
 }
 
-// By how much longer things are in the world than in the mesh, for a sheet as a whole.
-double scale_of(const Sheet& sheet, const Use& use) {
-  double inside = 0, outside = 0;
-  for (const auto& corners : sheet.corners) {
-    inside += area_of(corners);
-    outside += area_of(in_world(corners, use.world));
+// The area of each sheet as a skin's joints show it.
+std::vector<double> posed_areas(const tinygltf::Model& model, const UsedMesh& mesh, int number, const Use& use,
+                                std::span<const glm::dmat4> poses, std::span<const double> weights) {
+  std::vector<double> areas;
+  const auto& primitives = model.meshes[static_cast<std::size_t>(number)].primitives;
+  for (const auto& sheet : mesh.sheets) {
+    const Vertices vertices(model, primitives[sheet.primitive],
+                            {.node = use.name, .world = use.world, .weights = weights, .poses = poses}, sheet.what);
+    double area = 0;
+    for (const auto& triangle : sheet.triangles) {
+      Corners corners;
+      for (std::size_t k = 0; k < 3; ++k)
+        corners[k] = glm::vec3(vertices.transform(triangle[k]).world *
+                               glm::dvec4(vertices.position(triangle[k]), 1));
+      area += area_of(corners);
+    }
+    areas.push_back(area);
   }
-  const double scale = std::sqrt(outside / inside);
+  return areas;
+}
+
+Meshes used_meshes(const tinygltf::Model& model) {
+  Meshes meshes;
+  std::size_t triangles_left = max_triangles;
+  const auto nodes = place_nodes(model, {});
+  Remarks remarks;  // load() tells them
+  SkinReader skins(model, nodes, remarks);
+  for (const PlacedNode& placed : nodes) {
+    const auto& node = model.nodes[static_cast<std::size_t>(placed.node)];
+    if (node.mesh < 0 || static_cast<std::size_t>(node.mesh) >= model.meshes.size()) continue;
+    const std::string name = node_name(model, placed.node);
+    const auto& weights =
+        node.weights.empty() ? model.meshes[static_cast<std::size_t>(node.mesh)].weights : node.weights;
+    auto& mesh = meshes[node.mesh];
+    if (mesh.uses.empty()) mesh.sheets = sheets_of(model, node.mesh, name, weights, triangles_left);
+    mesh.uses.push_back({placed.node, name, placed.world, density_of(node, name), {}});
+    if (node.skin < 0) continue;
+    if (const auto poses = skins.poses(node.skin, "node " + in_quotes(name)); !poses.empty())
+      mesh.uses.back().posed = posed_areas(model, mesh, node.mesh, mesh.uses.back(), poses, weights);
+  }
+  return meshes;
+}
+
+// The area of a sheet of the mesh as the node shows it [m2].
+double area_in_world(const UsedMesh& mesh, std::size_t sheet, const Use& use) {
+  const Sheet& of = mesh.sheets[sheet];
+  if (!use.posed.empty())  // its backs are as large
+    return use.posed[sheet] * static_cast<double>(of.corners.size()) / static_cast<double>(of.fronts);
+  double area = 0;
+  for (const auto& corners : of.corners) area += area_of(in_world(corners, use.world));
+  return area;
+}
+
+// By how much longer things are in the world than in the mesh, for a sheet as a whole, times the node's density.
+double scale_of(const UsedMesh& mesh, std::size_t sheet, const Use& use) {
+  double inside = 0;
+  for (const auto& corners : mesh.sheets[sheet].corners) inside += area_of(corners);
+  const double scale = std::sqrt(area_in_world(mesh, sheet, use) / inside) * use.density;
   return std::isfinite(scale) ? scale : 0;
 }
 
@@ -301,16 +338,15 @@ void add_backs(Meshes& meshes) {
 std::size_t lay_flat(Meshes& meshes, std::uint32_t size) {
   double area = 0;
   for (const auto& [number, mesh] : meshes)
-    for (const auto& sheet : mesh.sheets)
-      for (const auto& use : mesh.uses)
-        for (const auto& corners : sheet.corners)
-          area += area_of(in_world(corners, use.world)) * use.density * use.density;
+    for (std::size_t s = 0; s < mesh.sheets.size(); ++s)
+      for (const auto& use : mesh.uses) area += area_in_world(mesh, s, use) * use.density * use.density;
   const double side = std::sqrt(area / usual_fill);  // of the atlas [m]
   std::size_t anew = 0;
   for (auto& [number, mesh] : meshes)
-    for (auto& sheet : mesh.sheets) {
+    for (std::size_t s = 0; s < mesh.sheets.size(); ++s) {
+      Sheet& sheet = mesh.sheets[s];
       double scale = 0;
-      for (const auto& use : mesh.uses) scale = std::max(scale, scale_of(sheet, use) * use.density);
+      for (const auto& use : mesh.uses) scale = std::max(scale, scale_of(mesh, s, use));
       if (!(scale > 0)) continue;
       const ChartLimits limits{.cell = side / std::min(size, finest_cells) / cells_in_texel / scale,
                                .longest = side / scale};
@@ -532,26 +568,25 @@ class Writer {
   }
 
   json primitive_of(int mesh, const Sheet& sheet, const Split& split) {
-    json primitive = file_.root()["meshes"][static_cast<std::size_t>(mesh)]["primitives"][sheet.primitive];
-    if (primitive.contains("extensions")) primitive["extensions"].erase("KHR_draco_mesh_compression");
-    primitive["mode"] = TINYGLTF_MODE_TRIANGLES;
-    const json was = primitive["attributes"];
-    primitive["attributes"] = json::object();
-    for (const auto& [semantic, accessor] : was.items()) {
+    const auto& in = model_.meshes[static_cast<std::size_t>(mesh)].primitives[sheet.primitive];
+    json out = without_compression(
+        file_.root()["meshes"][static_cast<std::size_t>(mesh)]["primitives"][sheet.primitive]);
+    const auto vertices = [&](const std::string& semantic, int accessor) {
+      return semantic == "NORMAL" ? normals_of(accessor, split) : file_.chosen(accessor, split.elements, semantic);
+    };
+    out["mode"] = TINYGLTF_MODE_TRIANGLES;
+    out["attributes"] = json::object();
+    for (const auto& [semantic, accessor] : in.attributes) {
       if (semantic == "TEXCOORD_1" && !moved_set_) continue;
       const std::string name = semantic == "TEXCOORD_1" ? "TEXCOORD_" + std::to_string(*moved_set_) : semantic;
-      primitive["attributes"][name] = semantic == "NORMAL"
-                                          ? normals_of(accessor.get<int>(), split)
-                                          : file_.chosen(accessor.get<int>(), split.elements, semantic);
+      out["attributes"][name] = vertices(semantic, accessor);
     }
-    if (primitive.contains("targets"))
-      for (json& target : primitive["targets"])
-        for (const auto& [semantic, accessor] : target.items())
-          accessor = semantic == "NORMAL" ? normals_of(accessor.get<int>(), split)
-                                          : file_.chosen(accessor.get<int>(), split.elements, semantic);
-    primitive["indices"] = file_.add_indices(split.indices);
-    if (sheet.double_sided) primitive["material"] = one_sided_.of(primitive["material"].get<int>());
-    return primitive;
+    for (std::size_t t = 0; t < in.targets.size(); ++t)
+      for (const auto& [semantic, accessor] : in.targets[t])
+        out["targets"][t][semantic] = vertices(semantic, accessor);
+    out["indices"] = file_.add_indices(split.indices);
+    if (sheet.double_sided) out["material"] = one_sided_.of(in.material);
+    return out;
   }
 
   // Those of backs point the other way.
@@ -559,7 +594,7 @@ class Writer {
     if (std::ranges::none_of(split.back, std::identity{}))
       return file_.chosen(accessor, split.elements, "NORMAL");
     const Accessor normals(model_, accessor, "NORMAL");
-    normals.require_vec3();
+    normals.require_vectors(3);
     std::vector<float> numbers;
     for (std::size_t i = 0; i < split.elements.size(); ++i) {
       if (split.elements[i] >= normals.count()) throw SceneError("NORMAL has fewer elements than POSITION");
@@ -591,9 +626,9 @@ std::optional<Unwrapped> unwrap(const std::filesystem::path& file, const tinyglt
   std::vector<Spot> spots;
   for (const auto& [number, mesh] : meshes)
     for (const auto& use : mesh.uses)
-      for (const auto& sheet : mesh.sheets) {
-        const double scale = scale_of(sheet, use) * use.density;
-        for (const auto& chart : sheet.charts) spots.push_back({&chart, scale});
+      for (std::size_t s = 0; s < mesh.sheets.size(); ++s) {
+        const double scale = scale_of(mesh, s, use);
+        for (const auto& chart : mesh.sheets[s].charts) spots.push_back({&chart, scale});
       }
   if (spots.empty()) return std::nullopt;  // load() says what is wrong
   const Atlas atlas = packed(spots, options);
@@ -615,7 +650,8 @@ std::optional<Unwrapped> unwrap(const std::filesystem::path& file, const tinyglt
 
 Unwrapped unwrap(const std::filesystem::path& file, const UnwrapOptions& options) {
   return naming(file, [&] {
-    const auto model = read_model(file);
+    Remarks remarks;  // load() tells them
+    const auto model = read_model(file, remarks);
     Unwrapped result;
     if (auto made = unwrap(file, model, options))
       result = std::move(*made);

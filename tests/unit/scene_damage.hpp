@@ -1,9 +1,13 @@
 // A sound scene, ways to spoil it, and what load() says then.
 #pragma once
 
+#include <gmock/gmock.h>
+
+#include <cstring>
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "lichtveld/scene/scene.hpp"
 #include "scene_builder.hpp"
@@ -27,6 +31,11 @@ inline std::string error_of_bytes(const std::string& bytes, const std::string& n
   return error_of(folder.write(name, bytes));
 }
 
+inline Scene loaded(const SceneBuilder& builder) {
+  const TempFolder folder;
+  return load(folder.write("scene.glb", builder.glb()));
+}
+
 // A floor and a child node; accessors: 0 POSITION, 1 TEXCOORD_1, 2 indices.
 inline SceneBuilder sound() {
   SceneBuilder builder;
@@ -43,13 +52,25 @@ struct SpoiltCase {
   const char* message;
 };
 
+// Each of the cases is refused with its message.
+inline void expect_refused(const SceneBuilder& sound_one, const std::vector<SpoiltCase>& cases) {
+  for (const SpoiltCase& bad : cases) {
+    SceneBuilder builder = sound_one;
+    bad.spoil(builder);
+    EXPECT_THAT(error_of_bytes(builder.glb()), ::testing::HasSubstr(bad.message)) << bad.name;
+  }
+}
+
 template <typename T>
 void overwrite(SceneBuilder& builder, std::size_t accessor, std::size_t element, T value) {
   const nlohmann::json& view =
       builder.gltf["bufferViews"][builder.gltf["accessors"][accessor]["bufferView"].get<std::size_t>()];
-  const auto bytes = reinterpret_cast<const char*>(&value);
-  builder.bin.replace(view["byteOffset"].get<std::size_t>() + element * sizeof value, sizeof value, bytes,
-                      sizeof value);
+  std::memcpy(&builder.bin.at(view["byteOffset"].get<std::size_t>() + element * sizeof value), &value,
+              sizeof value);
+}
+
+inline nlohmann::json& accessor_json(SceneBuilder& builder, int accessor) {
+  return builder.gltf["accessors"][static_cast<std::size_t>(accessor)];
 }
 
 inline nlohmann::json& attributes(SceneBuilder& b) {

@@ -4,6 +4,7 @@
 #include "lichtveld/scene/atlas.hpp"
 #include "lichtveld/scene/scene.hpp"
 #include "scene_builder.hpp"
+#include "scene_pictures.hpp"
 
 namespace lichtveld::scene {
 namespace {
@@ -11,6 +12,7 @@ namespace {
 using testing::Chart;
 using testing::SceneBuilder;
 using testing::TempFolder;
+using testing::text_of;
 
 constexpr std::array<glm::vec3, 4> floor_corners = {glm::vec3{-1, 0, 1}, {1, 0, 1}, {1, 0, -1}, {-1, 0, -1}};
 constexpr Chart whole_chart{0.1f, 0.1f, 0.9f, 0.9f};
@@ -171,15 +173,8 @@ TEST(SceneLoad, ZeroAreaTrianglesAreDropped) {
   EXPECT_EQ(load_built(builder).indices.size(), 3u);
 }
 
-// Two RGB pixels: 255 0 0 and 10 20 30.
-constexpr unsigned char picture_bytes[] = {
-    0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a, 0x00, 0x00, 0x00, 0x0d, 0x49, 0x48, 0x44, 0x52, 0x00, 0x00,
-    0x00, 0x02, 0x00, 0x00, 0x00, 0x01, 0x08, 0x02, 0x00, 0x00, 0x00, 0x7b, 0x40, 0xe8, 0xdd, 0x00, 0x00, 0x00,
-    0x0f, 0x49, 0x44, 0x41, 0x54, 0x78, 0x9c, 0x63, 0xf8, 0xcf, 0xc0, 0xc0, 0x25, 0x22, 0x07, 0x00, 0x06, 0x65,
-    0x01, 0x3c, 0x92, 0x2c, 0xf5, 0xeb, 0x00, 0x00, 0x00, 0x00, 0x49, 0x45, 0x4e, 0x44, 0xae, 0x42, 0x60, 0x82};
-
 TEST(SceneLoad, TexturesComeFromBufferViewsAndFilesBesideTheScene) {
-  const std::string picture(std::begin(picture_bytes), std::end(picture_bytes));
+  const std::string picture = text_of(testing::png);
   for (bool embedded : {true, false}) {
     SceneBuilder builder;
     const int material = builder.material(glm::vec3(1));

@@ -32,7 +32,13 @@ TEST(SceneOddities, EachIsWarnedOf) {
          attributes(b)["NORMAL"] = b.accessor(std::vector<glm::vec3>(4, glm::vec3(0)), 5126, "VEC3");
        },
        "1 primitives have unusable normals"},
-      {"Skin", [](auto& b) { b.gltf["nodes"][0]["skin"] = 0; }, "node \"floor\" has a skin, which is ignored"},
+      {"Skin",
+       [](auto& b) {
+         b.gltf["nodes"][0]["skin"] = 0;
+         b.gltf["skins"] = {{{"joints", {2}}}};
+         b.gltf["nodes"].push_back({{"name", "elsewhere"}});
+       },
+       "node \"floor\": has a skin whose joints are not in the scene; it is ignored"},
       {"EmissiveTexture",
        [](auto& b) {
          b.gltf["materials"][0]["emissiveTexture"] = {{"index", 0}};

@@ -27,6 +27,22 @@ std::vector<gpu::Image> upload_textures(const gpu::Device& device, const scene::
   return images;
 }
 
+constexpr std::array wrap_modes = {vk::SamplerAddressMode::eRepeat, vk::SamplerAddressMode::eMirroredRepeat,
+                                   vk::SamplerAddressMode::eClampToEdge};  // by scene::Wrap
+
+std::vector<vk::raii::Sampler> make_samplers(const gpu::Device& device) {
+  std::vector<vk::raii::Sampler> samplers;
+  for (const auto u : wrap_modes)
+    for (const auto v : wrap_modes) {
+      samplers.emplace_back(device.handle(), vk::SamplerCreateInfo{.magFilter = vk::Filter::eLinear,
+                                                                   .minFilter = vk::Filter::eLinear,
+                                                                   .addressModeU = u,
+                                                                   .addressModeV = v});
+      device.name(samplers.back(), "scene/sampler " + vk::to_string(u) + " " + vk::to_string(v));
+    }
+  return samplers;
+}
+
 // The atlas texel that each texel sends the light of.
 std::vector<std::uint32_t> atlas_sources(const TexelRecords& records) {
   std::vector<std::uint32_t> sources;
@@ -96,12 +112,12 @@ Geometry::Geometry(const gpu::Device& device, const scene::Scene& scene)
       walls(device, "scene/walls", sizeof(glm::vec4), vk::BufferUsageFlagBits::eStorageBuffer,
             gpu::Memory::host, rgba32f),
       textures(upload_textures(device, scene)),
-      sampler(device.handle(), vk::SamplerCreateInfo{.magFilter = vk::Filter::eLinear,
-                                                     .minFilter = vk::Filter::eLinear,
-                                                     .addressModeU = vk::SamplerAddressMode::eRepeat,
-                                                     .addressModeV = vk::SamplerAddressMode::eRepeat}),
-      device_(device) {
-  device.name(sampler, "scene/sampler");
+      device_(device),
+      samplers_(make_samplers(device)) {}
+
+const vk::raii::Sampler& Geometry::sampler(const scene::Material& material) const {
+  return samplers_[wrap_modes.size() * static_cast<std::size_t>(material.wrap[0]) +
+                   static_cast<std::size_t>(material.wrap[1])];
 }
 
 void Geometry::place(const scene::Offsets& to) {

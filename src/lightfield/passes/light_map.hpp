@@ -61,10 +61,13 @@ struct Geometry {
   gpu::Buffer walls_first,
       walls;  // scene::Walls: of each triangle; two vec4 a line, the first's w: 1 if it rises
   std::vector<gpu::Image> textures;  // of Scene::textures, and a white one at the end
-  vk::raii::Sampler sampler;         // linear, repeating: for textures
+
+  // Of the material's texture, linear.
+  const vk::raii::Sampler& sampler(const scene::Material& material) const;
 
  private:
   const gpu::Device& device_;
+  std::vector<vk::raii::Sampler> samplers_;  // one for each pair of wraps, those of u together
 };
 
 }  // namespace lichtveld::lightfield

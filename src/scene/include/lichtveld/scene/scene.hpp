@@ -2,8 +2,10 @@
 // coordinate each, materials, textures, and the bodies that players can move. Lengths are metres, as in glTF.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
+#include <glm/ext/vector_uint4_sized.hpp>
 #include <glm/glm.hpp>
 #include <limits>
 #include <optional>
@@ -19,18 +21,23 @@ struct SceneError : std::runtime_error {
 };
 
 struct Vertex {
-  glm::vec3 position;  // metres, world space with every body at rest
-  glm::vec3 normal;    // unit, world space; the face's own where the file has no NORMAL
-  glm::vec2 atlas;     // TEXCOORD_1; v = 0 is the atlas' top row
-  glm::vec2 colour;    // the coordinate set that baseColorTexture asks for
-  std::uint32_t body;  // index into Scene::bodies; 0 is everything that stands still
+  glm::vec3 position;        // metres, world space with every body at rest
+  glm::vec3 normal;          // unit, world space; the face's own where the file has no NORMAL
+  glm::vec2 atlas;           // TEXCOORD_1; v = 0 is the atlas' top row
+  glm::vec2 colour;          // where its base colour's texture is read
+  std::uint32_t body;        // index into Scene::bodies; 0 is everything that stands still
+  glm::u16vec4 tint{65535};  // COLOR_0 times 65535, linear: rgb is a factor of the base colour
 };
+
+// How a texture goes on along one axis where its coordinate leaves 0..1.
+enum class Wrap : std::uint32_t { repeat, mirror, clamp };
 
 struct Material {
   std::string name;
-  glm::vec3 base_colour{1};  // linear reflectance factor, 0..1
-  int texture = -1;          // index into Scene::textures, or -1
-  glm::vec3 emission{0};     // radiance Le [W m^-2 sr^-1]: emissiveFactor * KHR_materials_emissive_strength
+  glm::vec3 base_colour{1};                                 // linear reflectance factor, 0..1
+  int texture = -1;                                         // index into Scene::textures, or -1
+  std::array<Wrap, 2> wrap = {Wrap::repeat, Wrap::repeat};  // the texture's, along u and v
+  glm::vec3 emission{0};  // radiance Le [W m^-2 sr^-1]: emissiveFactor * KHR_materials_emissive_strength
   bool double_sided = false;
 };
 

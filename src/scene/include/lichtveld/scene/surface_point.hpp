@@ -16,9 +16,9 @@ SurfacePoint pulled_inside(const SurfacePoint& point);
 // Of the three corners; they sum to 1.
 glm::vec3 weights(const SurfacePoint& point);
 
-// Linear RGB, decoded from sRGB before the bilinear filter, as graphics hardware does it; repeating. `at` is
-// glTF's texture coordinate: (0, 0) is the upper left corner of the first pixel.
-glm::vec3 sample_srgb(const Texture& texture, glm::vec2 at);
+// Linear RGB, decoded from sRGB before the bilinear filter, as graphics hardware does it. `at` is glTF's
+// texture coordinate: (0, 0) is the upper left corner of the first pixel.
+glm::vec3 sample_srgb(const Texture& texture, glm::vec2 at, std::array<Wrap, 2> wrap = {});
 
 // What a surface of that material reflects there: 0..1, linear.
 glm::vec3 albedo_at(const Scene& scene, const Material& material, const SurfacePoint& point);

@@ -1,0 +1,249 @@
+// Compressed geometry: what goes in comes out, and hostile streams take neither memory nor the process.
+#include <draco/compression/encode.h>
+#include <draco/mesh/triangle_soup_mesh_builder.h>
+#include <gmock/gmock.h>
+#include <meshoptimizer.h>
+
+#include <random>
+
+#include "lichtveld/scene/scene.hpp"
+#include "scene_damage.hpp"
+#include "scene_log.hpp"
+
+namespace lichtveld::scene {
+namespace {
+
+using nlohmann::json;
+
+constexpr const char* meshopt = "EXT_meshopt_compression";
+constexpr const char* draco_extension = "KHR_draco_mesh_compression";
+
+json& view_json(SceneBuilder& b, int accessor) {
+  return b.gltf["bufferViews"][accessor_json(b, accessor)["bufferView"].get<std::size_t>()];
+}
+
+// Puts bytes into the file and gives the number of their view.
+std::size_t add_bytes(SceneBuilder& builder, const std::vector<unsigned char>& bytes) {
+  const int accessor = builder.accessor(bytes, 5121, "SCALAR");
+  return accessor_json(builder, accessor)["bufferView"].get<std::size_t>();
+}
+
+// Compresses what an accessor has, and takes its own bytes away.
+void pack(SceneBuilder& builder, int accessor, const std::vector<unsigned char>& bytes, const char* mode,
+          std::size_t count, std::size_t stride, const char* filter = nullptr) {
+  const std::size_t packed = add_bytes(builder, bytes);
+  json extension = builder.gltf["bufferViews"][packed];
+  extension.update({{"mode", mode}, {"count", count}, {"byteStride", stride}});
+  if (filter) extension["filter"] = filter;
+  json& view = view_json(builder, accessor);
+  view["extensions"][meshopt] = extension;
+  view["buffer"] = 1;
+  view["byteOffset"] = 0;
+}
+
+template <typename Element>
+std::vector<unsigned char> encoded_vertices(const std::vector<Element>& elements) {
+  std::vector<unsigned char> bytes(meshopt_encodeVertexBufferBound(elements.size(), sizeof(Element)));
+  bytes.resize(meshopt_encodeVertexBuffer(bytes.data(), bytes.size(), elements.data(), elements.size(),
+                                          sizeof(Element)));
+  return bytes;
+}
+
+const std::vector<unsigned int> corners = {0, 1, 2, 0, 2, 3};
+
+// sound() with everything in its fallback buffer, which has no bytes; TRIANGLES for its indices.
+SceneBuilder packed_by_meshopt() {
+  SceneBuilder builder = sound();
+  pack(builder, 0, encoded_vertices<glm::vec3>({{-1, 0, 1}, {1, 0, 1}, {1, 0, -1}, {-1, 0, -1}}), "ATTRIBUTES",
+       4, 12);
+  pack(builder, 1, encoded_vertices<glm::vec2>({{0.1f, 0.9f}, {0.9f, 0.9f}, {0.9f, 0.1f}, {0.1f, 0.1f}}),
+       "ATTRIBUTES", 4, 8);
+  std::vector<unsigned char> indices(meshopt_encodeIndexBufferBound(6, 4));
+  indices.resize(meshopt_encodeIndexBuffer(indices.data(), indices.size(), corners.data(), 6));
+  pack(builder, 2, indices, "TRIANGLES", 6, 2);
+  builder.gltf["extensionsRequired"] = {meshopt};
+  return builder;
+}
+
+// The buffers, as late as the file's bytes are all there.
+std::string glb(SceneBuilder builder) {
+  while (builder.bin.size() % 4) builder.bin.push_back('\0');
+  builder.gltf["buffers"] = {{{"byteLength", builder.bin.size()}},
+                             {{"byteLength", 1000}, {"extensions", {{meshopt, {{"fallback", true}}}}}}};
+  return builder.glb();
+}
+
+void expect_the_floor(const Scene& scene) {
+  ASSERT_EQ(scene.indices.size(), 6u);
+  glm::vec3 low(9), high(-9);
+  for (const std::uint32_t index : scene.indices) {
+    const Vertex& vertex = scene.vertices[index];
+    low = glm::min(low, vertex.position);
+    high = glm::max(high, vertex.position);
+    EXPECT_LT(glm::distance(vertex.normal, {0, 1, 0}), 1e-4f);
+    EXPECT_LT(
+        glm::distance(vertex.atlas, glm::vec2(0.5f) + 0.4f * glm::vec2(vertex.position.x, vertex.position.z)),
+        1e-3f);
+  }
+  EXPECT_LT(glm::distance(low, {-1, 0, -1}) + glm::distance(high, {1, 0, 1}), 1e-3f);
+}
+
+Scene loaded_bytes(const std::string& bytes) {
+  const TempFolder folder;
+  return load(folder.write("scene.glb", bytes));
+}
+
+TEST(SceneCompression, MeshoptIsRead) {
+  SceneBuilder builder = packed_by_meshopt();
+  expect_the_floor(loaded_bytes(glb(builder)));
+
+  std::vector<unsigned char> sequence(meshopt_encodeIndexSequenceBound(6, 4));
+  sequence.resize(meshopt_encodeIndexSequence(sequence.data(), sequence.size(), corners.data(), 6));
+  pack(builder, 2, sequence, "INDICES", 6, 2);
+  expect_the_floor(loaded_bytes(glb(builder)));
+}
+
+TEST(SceneCompression, MeshoptFiltersAreUndone) {
+  SceneBuilder builder = packed_by_meshopt();
+  const std::vector<glm::vec4> up(4, {0, 1, 0, 0});
+  std::vector<std::array<std::int8_t, 4>> octahedral(4);
+  meshopt_encodeFilterOct(octahedral.data(), 4, 4, 8, &up[0].x);
+  const int normals = builder.accessor(octahedral, 5120, "VEC3");
+  accessor_json(builder, normals)["normalized"] = true;
+  attributes(builder)["NORMAL"] = normals;
+  pack(builder, normals, encoded_vertices(octahedral), "ATTRIBUTES", 4, 4, "OCTAHEDRAL");
+  view_json(builder, normals)["byteStride"] = 4;
+
+  const std::vector<glm::vec3> places = {{-1, 0, 1}, {1, 0, 1}, {1, 0, -1}, {-1, 0, -1}};
+  std::vector<std::array<std::uint32_t, 3>> exponential(4);
+  meshopt_encodeFilterExp(exponential.data(), 4, 12, 15, &places[0].x);
+  pack(builder, 0, encoded_vertices(exponential), "ATTRIBUTES", 4, 12, "EXPONENTIAL");
+  expect_the_floor(loaded_bytes(glb(builder)));
+}
+
+TEST(SceneCompression, BadMeshoptIsRefused) {
+  const auto extension = [](SceneBuilder& b, int accessor) -> json& {
+    return view_json(b, accessor)["extensions"][meshopt];
+  };
+  const std::vector<SpoiltCase> cases = {
+      {"Mode", [&](auto& b) { extension(b, 0)["mode"] = "MAGIC"; },
+       "buffer view 0: EXT_meshopt_compression: unknown mode \"MAGIC\""},
+      {"Filter", [&](auto& b) { extension(b, 0)["filter"] = "SEPIA"; }, "the filter SEPIA is not read"},
+      {"FilterOfIndices", [&](auto& b) { extension(b, 2)["filter"] = "OCTAHEDRAL"; }, "ATTRIBUTES alone"},
+      {"FilterStride", [&](auto& b) { extension(b, 0)["filter"] = "OCTAHEDRAL"; },
+       "wants a byteStride of 4 or 8"},
+      {"Stride", [&](auto& b) { extension(b, 0)["byteStride"] = 13; }, "byteStride 13 does not go"},
+      {"StrideZero", [&](auto& b) { extension(b, 0)["byteStride"] = 0; }, "byteStride 0 does not go"},
+      {"StrideOfIndices", [&](auto& b) { extension(b, 2)["byteStride"] = 12; }, "byteStride 12 does not go"},
+      {"Part", [&](auto& b) { extension(b, 2)["count"] = 5; }, "no whole number of triangles"},
+      {"None", [&](auto& b) { extension(b, 0)["count"] = 0; }, "no elements"},
+      {"Negative", [&](auto& b) { extension(b, 0)["count"] = -1; }, "count is no whole number"},
+      {"Huge", [&](auto& b) { extension(b, 0)["count"] = 2'000'000'000; }, "bytes cannot hold 24000000000"},
+      {"Larger", [&](auto& b) { extension(b, 0)["count"] = 300; }, "its bytes do not decode"},
+      {"Smaller", [&](auto& b) { extension(b, 0)["count"] = 3; }, "do not fit buffer view 0"},
+      {"Outside", [&](auto& b) { extension(b, 0)["byteOffset"] = 1 << 20; }, "do not lie in buffer 0"},
+      {"Buffer", [&](auto& b) { extension(b, 0)["buffer"] = 7; }, "there is no buffer 7"},
+      {"Cut", [&](auto& b) { extension(b, 0)["byteLength"] = 20; }, "its bytes do not decode"},
+      {"Triangles", [&](auto& b) { extension(b, 2)["byteLength"] = 3; }, "its bytes do not decode"}};
+  for (const SpoiltCase& bad : cases) {
+    SceneBuilder builder = packed_by_meshopt();
+    bad.spoil(builder);
+    EXPECT_THAT(error_of_bytes(glb(builder)), ::testing::HasSubstr(bad.message)) << bad.name;
+  }
+}
+
+// sound() as a Draco stream, by one of its two methods.
+std::vector<unsigned char> encoded_floor(draco::MeshEncoderMethod method) {
+  draco::TriangleSoupMeshBuilder soup;
+  soup.Start(2);
+  const int position = soup.AddAttribute(draco::GeometryAttribute::POSITION, 3, draco::DT_FLOAT32);
+  const int atlas = soup.AddAttribute(draco::GeometryAttribute::TEX_COORD, 2, draco::DT_FLOAT32);
+  const std::vector<glm::vec3> places = {{-1, 0, 1}, {1, 0, 1}, {1, 0, -1}, {-1, 0, -1}};
+  const std::vector<glm::vec2> charts = {{0.1f, 0.9f}, {0.9f, 0.9f}, {0.9f, 0.1f}, {0.1f, 0.1f}};
+  for (std::uint32_t face = 0; face < 2; ++face) {
+    const auto a = corners[3 * face], b = corners[3 * face + 1], c = corners[3 * face + 2];
+    soup.SetAttributeValuesForFace(position, draco::FaceIndex(face), &places[a], &places[b], &places[c]);
+    soup.SetAttributeValuesForFace(atlas, draco::FaceIndex(face), &charts[a], &charts[b], &charts[c]);
+  }
+  const auto mesh = soup.Finalize();
+  draco::Encoder encoder;
+  encoder.SetEncodingMethod(method);
+  encoder.SetAttributeQuantization(draco::GeometryAttribute::POSITION, 14);
+  encoder.SetAttributeQuantization(draco::GeometryAttribute::TEX_COORD, 14);
+  draco::EncoderBuffer out;
+  if (!encoder.EncodeMeshToBuffer(*mesh, &out).ok()) throw std::runtime_error("Draco does not encode");
+  return {out.data(), out.data() + out.size()};
+}
+
+SceneBuilder packed_by_draco(const std::vector<unsigned char>& bytes) {
+  SceneBuilder builder = sound();
+  for (const int accessor : {0, 1, 2}) accessor_json(builder, accessor).erase("bufferView");
+  builder.primitive(0)["extensions"][draco_extension] = {{"bufferView", add_bytes(builder, bytes)},
+                                                         {"attributes", {{"POSITION", 0}, {"TEXCOORD_1", 1}}}};
+  builder.gltf["extensionsRequired"] = {draco_extension};
+  return builder;
+}
+
+TEST(SceneCompression, DracoIsRead) {
+  for (const auto method : {draco::MESH_EDGEBREAKER_ENCODING, draco::MESH_SEQUENTIAL_ENCODING}) {
+    SceneBuilder builder = packed_by_draco(encoded_floor(method));
+    expect_the_floor(loaded(builder));
+    // What is not in the stream is read as ever.
+    attributes(builder)["NORMAL"] = builder.accessor(std::vector<glm::vec3>(4, {0, 1, 0}), 5126, "VEC3");
+    expect_the_floor(loaded(builder));
+  }
+}
+
+TEST(SceneCompression, BadDracoIsRefused) {
+  const auto stream = encoded_floor(draco::MESH_EDGEBREAKER_ENCODING);
+  const auto sequential = encoded_floor(draco::MESH_SEQUENTIAL_ENCODING);
+  // The bytes from `at` on are others.
+  const auto with = [](std::vector<unsigned char> bytes, std::size_t at, std::vector<unsigned char> others) {
+    std::copy(others.begin(), others.end(), bytes.begin() + static_cast<std::ptrdiff_t>(at));
+    return packed_by_draco(bytes);
+  };
+  const auto refuses = [](SceneBuilder builder, const char* message) {
+    EXPECT_THAT(error_of_bytes(builder.glb()), ::testing::HasSubstr(message)) << message;
+  };
+  const std::vector<unsigned char> most = {0xff, 0xff, 0xff, 0xff, 0x0f};
+  refuses(with(stream, 0, {'d'}), "mesh 0, primitive 0: KHR_draco_mesh_compression: no Draco stream; undo");
+  refuses(with(stream, 5, {1, 1}), "not of Draco's format 2.2");
+  refuses(with(stream, 7, {0}), "no triangles");
+  refuses(with(stream, 8, {9}), "an unknown way to encode triangles");
+  refuses(with(stream, 13, most), "it has 4294967295 triangles");
+  refuses(with(sequential, 11, most), "it has 4294967295 triangles");
+  refuses(with(sequential, 12, most), "triangles, more than 4 million");
+  for (std::size_t size = 0; size < stream.size(); ++size) {
+    SceneBuilder builder =
+        packed_by_draco({stream.begin(), stream.begin() + static_cast<std::ptrdiff_t>(size)});
+    EXPECT_NE(error_of_bytes(builder.glb()), "no error") << size;
+  }
+  const auto extension = [](SceneBuilder& b) -> json& { return b.primitive(0)["extensions"][draco_extension]; };
+  expect_refused(
+      packed_by_draco(stream),
+      {{"View", [&](auto& b) { extension(b)["bufferView"] = 99; }, "there is no buffer view 99"},
+       {"NoView", [&](auto& b) { extension(b).erase("bufferView"); }, "bufferView is no whole number"},
+       {"NoAttributes", [&](auto& b) { extension(b).erase("attributes"); }, "has no attributes"},
+       {"Id", [&](auto& b) { extension(b)["attributes"]["POSITION"] = 7; }, "POSITION: it has no attribute 7"},
+       {"Accessor", [&](auto& b) { attributes(b)["POSITION"] = 77; }, "there is no accessor 77"}});
+}
+
+// Whatever is done to a stream, it is read or refused.
+TEST(SceneCompression, DamagedStreams) {
+  testing::LogCapture log;
+  std::mt19937 random(1);
+  const std::vector<std::string> files = {
+      glb(packed_by_meshopt()), packed_by_draco(encoded_floor(draco::MESH_EDGEBREAKER_ENCODING)).glb(),
+      packed_by_draco(encoded_floor(draco::MESH_SEQUENTIAL_ENCODING)).glb()};
+  const TempFolder folder;
+  for (int round = 0; round < 3000; ++round) {
+    std::string bytes = files[static_cast<std::size_t>(round) % files.size()];
+    const std::size_t data = bytes.find("BIN");
+    for (std::size_t hits = 1 + random() % 3; hits > 0; --hits)
+      bytes[data + 4 + random() % (bytes.size() - data - 4)] = static_cast<char>(random());
+    error_of(folder.write("damaged.glb", bytes));
+  }
+}
+
+}  // namespace
+}  // namespace lichtveld::scene
