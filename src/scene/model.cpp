@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <sstream>
 
 #include "compression.hpp"
 #include "lichtveld/scene/scene.hpp"
@@ -114,7 +115,9 @@ tinygltf::Model read_model(const fs::path& file, Remarks& remarks) {
     std::ranges::replace(error, '\n', ' ');
     throw SceneError("not valid glTF: " + (error.empty() ? "unknown reason" : error));
   }
-  if (!warning.empty()) remarks.add(warning);
+  std::istringstream lines(warning);
+  for (std::string line; std::getline(lines, line);)
+    if (!line.empty()) remarks.add(line);
   decompress(model);
   make_plain(model);
   return model;

@@ -203,6 +203,17 @@ TEST(SceneMaterials, WebpTexturesAreRead) {
   }
 }
 
+TEST(SceneMaterials, DataUrisAreOfAnyType) {
+  for (const char* type : {"image/webp", "image/jpg", ""}) {
+    SceneBuilder builder = textured();
+    builder.gltf["images"] = {
+        {{"uri",
+          std::string("data:") + type + ";base64,UklGRiAAAABXRUJQVlA4TBQAAAAvAQAAAA8wFF/4H4/5Dy1UIKL/AQ=="}}};
+    EXPECT_EQ(loaded(builder).textures[0].rgba, (std::vector<std::uint8_t>{255, 0, 0, 255, 10, 20, 30, 255}))
+        << type;
+  }
+}
+
 TEST(SceneMaterials, AFallbackIsTaken) {
   for (const char* extension : {"KHR_texture_basisu", "EXT_texture_webp", "EXT_texture_avif"}) {
     SceneBuilder builder = textured();
