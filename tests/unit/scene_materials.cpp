@@ -121,6 +121,17 @@ TEST(SceneMaterials, TexturesAreTransformed) {
   expect_colour(transformed({{"rotation", quarter}, {"scale", {1, 3}}}, 0, -0.5f), dark);
 }
 
+TEST(SceneMaterials, QuantisedCoordinatesAreScaledBack) {
+  SceneBuilder builder = textured();
+  attributes(builder)["TEXCOORD_0"] = builder.accessor(
+      std::vector<std::array<std::int16_t, 2>>{{-400, 0}, {400, 0}, {400, 0}, {-400, 0}}, 5122, "VEC2");
+  base_colour(builder)["baseColorTexture"]["extensions"]["KHR_texture_transform"] = {
+      {"scale", {1.0 / 800, 1.0 / 800}}, {"offset", {0.5, 0.5}}};
+  const Scene scene = loaded(builder);
+  expect_colour(albedo_of(scene, -0.5f, 0), red);
+  expect_colour(albedo_of(scene, 0.5f, 0), dark);
+}
+
 TEST(SceneMaterials, AnyTexcoordSetIsRead) {
   SceneBuilder builder = textured();
   attributes(builder)["TEXCOORD_3"] = builder.accessor(std::vector<glm::vec2>(4, {0.75f, 0.5f}), 5126, "VEC2");
