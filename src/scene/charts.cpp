@@ -317,7 +317,9 @@ class Charter {
     }
     const glm::dvec2 size = result.extent.size();
     if (!charts_[chart].triangles.empty() && std::max(size.x, size.y) > limits_.longest) return std::nullopt;
-    result.cells = FlatTriangle::of(in_cells);
+    // One of more cells than any atlas has is alone, and takes no time.
+    constexpr double most_cells = 1e5;
+    if (std::max(size.x, size.y) <= most_cells * limits_.cell) result.cells = FlatTriangle::of(in_cells);
     if (result.cells && cells_.held(*result.cells, chart) > 0) return std::nullopt;
     return result;
   }
@@ -472,6 +474,12 @@ std::vector<Chart> charts_of(std::span<const Corners> triangles, std::span<const
     const auto number = static_cast<std::uint32_t>(kept.size());
     bool usable = flat_area > 0 && std::isfinite(scale) && lost <= folded_share * area;
     if (usable) {
+      Extent extent;
+      for (const auto t : chart.triangles)
+        for (const auto& at : uv[t]) extent.add(glm::dvec2(at) * scale);
+      usable = std::max(extent.size().x, extent.size().y) <= limits.longest;
+    }
+    if (usable) {
       const glm::dvec2 origin(uv[chart.triangles[0]][0]);
       for (const auto t : chart.triangles) {
         std::array<glm::dvec2, 3> flat, in_cells;
@@ -487,7 +495,6 @@ std::vector<Chart> charts_of(std::span<const Corners> triangles, std::span<const
       }
       usable = static_cast<double>(twice) <= folded_share * static_cast<double>(filled);
       settle(chart);
-      usable = usable && std::max(chart.extent.x, chart.extent.y) <= limits.longest;
     }
     if (usable)
       kept.push_back(std::move(chart));

@@ -99,16 +99,62 @@ void check_uri(const json& entry, const std::string& what) {
   }
 }
 
-// tinygltf wants what glTF leaves out.
-bool complete(json& root) {
+// The array of that name in an object, or an empty one.
+json& array_in(json& object, const char* key) {
+  static json none = json::array();
+  const auto found = object.find(key);
+  return found == object.end() || !found->is_array() ? none : *found;
+}
+
+bool name_bind_matrices(json& root) {
   bool changed = false;
-  const std::size_t skins = list(root, "skins").size();
-  for (std::size_t i = 0; i < skins; ++i)
-    if (json& skin = root["skins"][i]; !skin.contains("inverseBindMatrices")) {
+  for (json& skin : array_in(root, "skins"))
+    if (!skin.contains("inverseBindMatrices")) {
       skin["inverseBindMatrices"] = -1;
       changed = true;
     }
   return changed;
+}
+
+// Indices whose accessor has a sparse part alone go as an attribute.
+bool hide_sparse_indices(json& root) {
+  const json& accessors = array_in(root, "accessors");
+  bool changed = false;
+  for (json& mesh : array_in(root, "meshes"))
+    for (json& primitive : array_in(mesh, "primitives")) {
+      if (!primitive.is_object() || !primitive.contains("indices") || !primitive.contains("attributes"))
+        continue;
+      const json& index = primitive["indices"];
+      if (!index.is_number_unsigned() || index.get<std::size_t>() >= accessors.size() ||
+          accessors[index.get<std::size_t>()].contains("bufferView") || !primitive["attributes"].is_object())
+        continue;
+      primitive["attributes"][hidden_indices] = index;
+      primitive.erase("indices");
+      changed = true;
+    }
+  return changed;
+}
+
+// Of data in URIs tinygltf reads a few types alone, though nobody asks for their type.
+bool strip_data_types(json& root) {
+  constexpr const char *any = "data:application/octet-stream;base64,", *mark = ";base64,";
+  bool changed = false;
+  for (const char* key : {"images", "buffers"})
+    for (json& entry : array_in(root, key)) {
+      if (!entry.contains("uri") || !entry["uri"].is_string()) continue;
+      const std::string uri = entry["uri"].get<std::string>();
+      const std::size_t data = uri.find(mark);
+      if (!uri.starts_with("data:") || data == std::string::npos || uri.starts_with(any)) continue;
+      entry["uri"] = any + uri.substr(data + std::strlen(mark));
+      changed = true;
+    }
+  return changed;
+}
+
+// tinygltf wants what glTF leaves out, and less than glTF allows.
+bool suit_tinygltf(json& root) {
+  const bool skins = name_bind_matrices(root), indices = hide_sparse_indices(root);
+  return strip_data_types(root) || skins || indices;
 }
 
 // The file with that JSON instead of its own.
@@ -137,9 +183,12 @@ json parse_json(std::span<const std::uint8_t> bytes) {
 std::vector<std::uint8_t> checked(std::vector<std::uint8_t> bytes, Remarks& remarks) {
   const bool binary = is_binary(bytes);
   json root = parse_json(bytes);
+  for (const char* key : {"accessors", "bufferViews", "buffers", "images", "materials", "meshes", "nodes",
+                          "scenes", "skins", "textures"})
+    list(root, key);
   check_extensions(root, remarks);
   const bool pointed = point_at_compressed(root);
-  const bool changed = complete(root) || pointed;
+  const bool changed = suit_tinygltf(root) || pointed;
 
   const json& buffers = list(root, "buffers");
   std::uint64_t total = 0;
@@ -176,7 +225,6 @@ std::vector<std::uint8_t> checked(std::vector<std::uint8_t> bytes, Remarks& rema
   }
   const json& images = list(root, "images");
   for (std::size_t i = 0; i < images.size(); ++i) check_uri(images[i], "image " + std::to_string(i));
-  for (const char* key : {"nodes", "meshes", "materials", "textures", "scenes"}) list(root, key);
   return changed ? with_json(bytes, binary, root) : std::move(bytes);
 }
 

@@ -82,20 +82,24 @@ std::vector<Piece> read_pieces(const tinygltf::Model& model, const LoadOptions& 
   const Owners owners = find_owners(model, nodes, scene);
   scene.punctual = read_lights(model, nodes, owners, options.lumens_per_watt);
   std::vector<Piece> pieces;
-  std::size_t triangles_left = max_triangles, primitives_left = max_triangles;
+  std::size_t triangles_left = max_triangles;
+  std::size_t parts_left = max_triangles;  // primitives and morph targets: each takes its time
   SkinReader skins(model, nodes, oddities.remarks);
   for (const PlacedNode& placed : nodes) {
     const tinygltf::Node& node = model.nodes[static_cast<std::size_t>(placed.node)];
-    if (node.mesh == -1) continue;
+    if (node.mesh == -1 || !placed.visible) continue;
     const std::string name = node_name(model, placed.node);
     if (node.mesh < 0 || static_cast<std::size_t>(node.mesh) >= model.meshes.size()) {
       throw SceneError("node \"" + name + "\": there is no mesh " + std::to_string(node.mesh));
     }
     const auto& mesh = model.meshes[static_cast<std::size_t>(node.mesh)];
     const auto& primitives = mesh.primitives;
-    if (primitives.size() > primitives_left)
-      throw SceneError("node \"" + name + "\": the scene has more than 4 million primitives; simplify it");
-    primitives_left -= primitives.size();
+    std::size_t parts = primitives.size();
+    for (const auto& primitive : primitives) parts += primitive.targets.size();
+    if (parts > parts_left)
+      throw SceneError("node \"" + name +
+                       "\": the scene has more than 4 million primitives and morph targets; simplify it");
+    parts_left -= parts;
     const auto poses =
         node.skin == -1 ? std::span<const glm::dmat4>() : skins.poses(node.skin, "node \"" + name + "\"");
     for (std::uint32_t i = 0; i < primitives.size(); ++i) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "compression.hpp"
 #include "lichtveld/scene/scene.hpp"
@@ -121,7 +122,9 @@ tinygltf::Model parse_model(std::vector<std::uint8_t> contents, const fs::path& 
     std::ranges::replace(error, '\n', ' ');
     throw SceneError("not valid glTF: " + (error.empty() ? "unknown reason" : error));
   }
-  if (!warning.empty()) remarks.add(warning);
+  std::istringstream lines(warning);
+  for (std::string line; std::getline(lines, line);)
+    if (!line.empty()) remarks.add(line);
   decompress(model);
   make_plain(model);
   return model;

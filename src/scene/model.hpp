@@ -22,6 +22,9 @@ namespace lichtveld::scene {
 // SceneError without the file's name.
 std::vector<std::uint8_t> checked(std::vector<std::uint8_t> bytes, Remarks& remarks);
 
+// What `checked` calls indices that tinygltf would refuse.
+inline constexpr const char* hidden_indices = "_HIDDEN_INDICES";
+
 // The parsed file in plain glTF: nothing compressed, with a scene, and each instance a node. Buffers are
 // loaded; an image holds its encoded bytes when it came by URI, and nothing when it lies in a buffer view.
 // Throws SceneError without the file's name.

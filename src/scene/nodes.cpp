@@ -41,6 +41,13 @@ glm::dmat4 local_transform(const tinygltf::Node& node, const std::string& what) 
   return result;
 }
 
+bool is_hidden(const tinygltf::Node& node) {
+  const auto found = node.extensions.find("KHR_node_visibility");
+  if (found == node.extensions.end() || !found->second.IsObject()) return false;
+  const tinygltf::Value& visible = found->second.Get("visible");
+  return visible.IsBool() && !visible.Get<bool>();
+}
+
 }  // namespace
 
 bool says(const tinygltf::Value& extras, const char* name) {
@@ -99,6 +106,7 @@ std::vector<PlacedNode> place_nodes(const tinygltf::Model& model, std::span<cons
     const bool is_light = are_of_light(in.extras) || std::ranges::find(lights, name) != lights.end();
     open.push_back({.node = node,
                     .world = parent.world * local_transform(in, "node \"" + name + "\""),
+                    .visible = parent.visible && !is_hidden(in),
                     .movable = parent.movable < 0 && says(in.extras, "movable") ? node : parent.movable,
                     .light = parent.light < 0 && is_light ? node : parent.light});
   };

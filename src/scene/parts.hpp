@@ -30,6 +30,7 @@ Materials read_materials(const tinygltf::Model& model, Remarks& remarks);
 struct PlacedNode {
   int node = 0;
   glm::dmat4 world{1};
+  bool visible = true;  // KHR_node_visibility, of it and all above
   // The outermost node at or above this one with extras.movable, or -1, and the one that is a Light.
   int movable = -1, light = -1;
 };

@@ -15,6 +15,12 @@ namespace {
 constexpr const char* instancing = "EXT_mesh_gpu_instancing";
 constexpr std::size_t max_instances = 100'000;  // over all nodes: each becomes a node and a surface
 
+void show_indices(tinygltf::Model& model) {
+  for (tinygltf::Mesh& mesh : model.meshes)
+    for (tinygltf::Primitive& primitive : mesh.primitives)
+      if (const auto hidden = primitive.attributes.extract(hidden_indices)) primitive.indices = hidden.mapped();
+}
+
 void add_scene(tinygltf::Model& model) {
   if (!model.scenes.empty()) return;
   std::set<int> children;
@@ -96,6 +102,7 @@ void expand_instances(tinygltf::Model& model) {
 }  // namespace
 
 void make_plain(tinygltf::Model& model) {
+  show_indices(model);
   add_scene(model);
   expand_instances(model);
 }

@@ -6,7 +6,8 @@
 namespace lichtveld::scene {
 
 // A file without scenes gets one of all nodes that are nobody's children. Each instance of a node
-// (EXT_mesh_gpu_instancing) becomes a child of that node with the node's name. Throws SceneError.
+// (EXT_mesh_gpu_instancing) becomes a child of that node with the node's name. Indices are where they belong
+// again. Throws SceneError.
 void make_plain(tinygltf::Model& model);
 
 }  // namespace lichtveld::scene

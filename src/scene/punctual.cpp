@@ -70,7 +70,7 @@ std::vector<PunctualLight> read_lights(const tinygltf::Model& model, const std::
   for (const PlacedNode& placed : nodes) {
     const auto& node = model.nodes[static_cast<std::size_t>(placed.node)];
     const auto found = node.extensions.find(extension);
-    if (found == node.extensions.end()) continue;
+    if (found == node.extensions.end() || !placed.visible) continue;
     const std::string name = node_name(model, placed.node), what = "node \"" + name + "\": light";
     const int number =
         found->second.IsObject() && found->second.Has("light") && found->second.Get("light").IsInt()

@@ -112,7 +112,9 @@ std::vector<Sheet> sheets_of(const tinygltf::Model& model, int mesh, const std::
     for (const auto& t : sheet.triangles)
       sheet.corners.push_back({vertices.position(t[0]), vertices.position(t[1]), vertices.position(t[2])});
     for (std::size_t t = 0; t < sheet.triangles.size(); ++t)
-      for (std::size_t k = 0; k < 3; ++k) check_place(sheet.corners[t][k], sheet.triangles[t][k], sheet.what);
+      for (std::size_t k = 0; k < 3; ++k)
+        if (const auto& place = sheet.corners[t][k]; !std::isfinite(place.x + place.y + place.z))
+          check_place(place, sheet.triangles[t][k], sheet.what);
     sheet.own = own_atlas(model, primitive, sheet, vertices.count());
     sheets.push_back(std::move(sheet));
   }

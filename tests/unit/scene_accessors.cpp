@@ -62,6 +62,13 @@ TEST(SceneAccessors, WithoutABufferViewElementsAreZero) {
   EXPECT_EQ(loaded(builder).vertices[0].normal, glm::vec3(0, 0, 1));
 }
 
+TEST(SceneAccessors, IndicesMayBeSparseAlone) {
+  SceneBuilder builder = sound();
+  make_sparse(builder, 2, std::vector<std::uint8_t>{1, 2}, std::vector<std::uint16_t>{1, 2});
+  accessor_json(builder, 2).erase("bufferView");
+  EXPECT_EQ(corners_of(loaded(builder)), (std::vector<glm::vec3>{{-1, 0, 1}, {1, 0, 1}, {1, 0, -1}}));
+}
+
 TEST(SceneAccessors, BadSparsePartsAreRefused) {
   SceneBuilder builder = sound();
   make_sparse(builder, 0, std::vector<std::uint16_t>{0, 2}, std::vector<glm::vec3>(2));

@@ -238,9 +238,12 @@ TEST(SceneCompression, DamagedStreams) {
   const TempFolder folder;
   for (int round = 0; round < 3000; ++round) {
     std::string bytes = files[static_cast<std::size_t>(round) % files.size()];
-    const std::size_t data = bytes.find("BIN");
+    const std::size_t data = bytes.find("BIN") + 4;
     for (std::size_t hits = 1 + random() % 3; hits > 0; --hits)
-      bytes[data + 4 + random() % (bytes.size() - data - 4)] = static_cast<char>(random());
+      if (random() % 3 > 0)  // in a stream, or in the JSON's numbers
+        bytes[data + random() % (bytes.size() - data)] = static_cast<char>(random());
+      else if (char& letter = bytes[random() % data]; letter >= '0' && letter <= '9')
+        letter = static_cast<char>('0' + random() % 10);
     error_of(folder.write("damaged.glb", bytes));
   }
 }

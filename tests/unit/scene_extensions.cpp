@@ -64,6 +64,22 @@ TEST(SceneExtensions, DamagedListsAreNoHarm) {
   }
 }
 
+TEST(SceneExtensions, HiddenNodesAreLeftOut) {
+  LogCapture log;
+  SceneBuilder builder = sound();
+  builder.quad("ghost", {glm::vec3{-1, 3, -1}, {1, 3, -1}, {1, 3, 1}, {-1, 3, 1}}, {0, 0, 0.05f, 0.05f}, 0);
+  builder.gltf["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "point"}}};
+  builder.node(2)["extensions"]["KHR_lights_punctual"]["light"] = 0;
+  builder.gltf["nodes"].push_back({{"name", "group"}, {"children", {2}}});
+  builder.gltf["scenes"][0]["nodes"] = {0, 3};
+  EXPECT_EQ(loaded(builder).surfaces.size(), 2u);
+  builder.node(3)["extensions"]["KHR_node_visibility"]["visible"] = false;
+  builder.gltf["extensionsRequired"] = {"KHR_node_visibility"};
+  const Scene scene = loaded(builder);
+  EXPECT_EQ(scene.surfaces.size(), 1u);
+  EXPECT_TRUE(scene.punctual.empty());
+}
+
 TEST(SceneExtensions, WithoutScenesAllRootsAreShown) {
   SceneBuilder builder = sound();
   builder.quad("ceiling", {glm::vec3{-1, 3, -1}, {1, 3, -1}, {1, 3, 1}, {-1, 3, 1}}, {0, 0, 0.05f, 0.05f}, 0);

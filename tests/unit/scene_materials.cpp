@@ -121,6 +121,17 @@ TEST(SceneMaterials, TexturesAreTransformed) {
   expect_colour(transformed({{"rotation", quarter}, {"scale", {1, 3}}}, 0, -0.5f), dark);
 }
 
+TEST(SceneMaterials, QuantisedCoordinatesAreScaledBack) {
+  SceneBuilder builder = textured();
+  attributes(builder)["TEXCOORD_0"] = builder.accessor(
+      std::vector<std::array<std::int16_t, 2>>{{-400, 0}, {400, 0}, {400, 0}, {-400, 0}}, 5122, "VEC2");
+  base_colour(builder)["baseColorTexture"]["extensions"]["KHR_texture_transform"] = {
+      {"scale", {1.0 / 800, 1.0 / 800}}, {"offset", {0.5, 0.5}}};
+  const Scene scene = loaded(builder);
+  expect_colour(albedo_of(scene, -0.5f, 0), red);
+  expect_colour(albedo_of(scene, 0.5f, 0), dark);
+}
+
 TEST(SceneMaterials, AnyTexcoordSetIsRead) {
   SceneBuilder builder = textured();
   attributes(builder)["TEXCOORD_3"] = builder.accessor(std::vector<glm::vec2>(4, {0.75f, 0.5f}), 5126, "VEC2");
@@ -200,6 +211,17 @@ TEST(SceneMaterials, WebpTexturesAreRead) {
     ASSERT_EQ(scene.textures.size(), 1u);
     const std::uint8_t first = alpha ? 0 : 255, second = alpha ? 128 : 255;
     EXPECT_EQ(scene.textures[0].rgba, (std::vector<std::uint8_t>{255, 0, 0, first, 10, 20, 30, second}));
+  }
+}
+
+TEST(SceneMaterials, DataUrisAreOfAnyType) {
+  for (const char* type : {"image/webp", "image/jpg", ""}) {
+    SceneBuilder builder = textured();
+    builder.gltf["images"] = {
+        {{"uri",
+          std::string("data:") + type + ";base64,UklGRiAAAABXRUJQVlA4TBQAAAAvAQAAAA8wFF/4H4/5Dy1UIKL/AQ=="}}};
+    EXPECT_EQ(loaded(builder).textures[0].rgba, (std::vector<std::uint8_t>{255, 0, 0, 255, 10, 20, 30, 255}))
+        << type;
   }
 }
 

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <random>
 
 #include "lichtveld/scene/scene.hpp"
 #include "scene_damage.hpp"
@@ -245,6 +246,25 @@ TEST(SceneShapes, BadInstancesAreRefused) {
           accessor_json(b, 3)["count"] = 1ull << 60;
         },
         "more than 100000 instances"}});
+}
+
+// Whatever is done to such a file, it is read or refused.
+TEST(SceneShapes, Damage) {
+  testing::LogCapture log;
+  std::mt19937 random(1);
+  SceneBuilder morphing_one = morphing();
+  morphing_one.node(0)["weights"] = {0.5, 1};
+  const std::vector<std::string> files = {morphing_one.glb(), skinned().glb(), skinned(false).glb(),
+                                          instanced().glb()};
+  const TempFolder folder;
+  for (int round = 0; round < 2000; ++round) {
+    std::string bytes = files[static_cast<std::size_t>(round) % files.size()];
+    for (std::size_t hits = 1 + random() % 3; hits > 0; --hits) {
+      char& byte = bytes[random() % bytes.size()];
+      byte = byte >= '0' && byte <= '9' ? static_cast<char>('0' + random() % 10) : static_cast<char>(random());
+    }
+    error_of(folder.write("damaged.glb", bytes));
+  }
 }
 
 }  // namespace
