@@ -172,8 +172,9 @@ function withAtlas(scene, { executable, serveOptions }, folder) {
   const { status, signal } = spawnSync(executable, ['unwrap', scene, '--out', made, ...size], {
     stdio: ['ignore', 2, 2],
   });
-  if (status !== 0) throw new Error(`the scene cannot be used${signal ? ` (unwrap ended by ${signal})` : ''}`);
-  return made;
+  if (status === 0) return made;
+  say(`the scene cannot be used${signal ? `: unwrap was ended by ${signal}` : ''}`);
+  process.exit(status ?? 1);
 }
 
 let options;
@@ -191,13 +192,7 @@ process.on('exit', removeFiles);
 for (const signal of ['SIGINT', 'SIGTERM', 'SIGHUP']) process.on(signal, () => company.finish(0));
 
 const { host, address, port, executable, serveOptions, seenFromOutside } = options;
-let scene;
-try {
-  scene = withAtlas(options.scene, options, folder);
-} catch (error) {
-  say(error.message);
-  process.exit(2);
-}
+const scene = withAtlas(options.scene, options, folder);
 const token = writeSecret(folder, 'token').path;
 const scheme = options['tls-cert'] ? 's' : '';
 // A certificate is for a name; without one the machine reaches itself by its own address.

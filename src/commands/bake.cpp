@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "command_list.hpp"
+#include "gutters.hpp"
 #include "lichtveld/files/output.hpp"
 #include "lichtveld/progress/progress.hpp"
 #include "lichtveld/scene/atlas.hpp"
@@ -80,8 +81,9 @@ void bake(const BakeOptions& options) {
   scene::check_atlas(job.scene, options.settings.size);
   for (const auto& text : options.moves) job.moves.push_back(parse_move(text, job.scene));
 
-  const Baked baked =
-      options.method.is_reference() ? bake_reference(options, job) : bake_light_field(options, job);
+  Baked baked = options.method.is_reference() ? bake_reference(options, job) : bake_light_field(options, job);
+  fill_gutters(baked.irradiance, baked.size);
+  for (auto& light : baked.apart) fill_gutters(light.irradiance, baked.size);
   files::write_exr(options.out, baked.irradiance, baked.size);
   for (const auto& [light, irradiance] : baked.apart)
     files::write_exr(std::filesystem::path(options.lights_apart) / light, irradiance, baked.size);
@@ -104,7 +106,9 @@ void add_bake(CLI::App& application) {
   auto* command = application.add_subcommand("bake", "Compute a scene's irradiance into a file");
   const auto options = std::make_shared<BakeOptions>();
   command->add_option("scene", options->scene, "The scene, .glb or .gltf")->required()->type_name("SCENE");
-  command->add_option("--out", options->out, "Irradiance [W/m2]: float32 RGBA, A = 1 on valid texels")
+  command
+      ->add_option("--out", options->out,
+                   "Irradiance [W/m2]: float32 RGBA, A = 1 on valid texels; RGB goes on beyond the charts")
       ->required()
       ->type_name("E.exr");
   command->add_option("--png", options->png, "What players see: tone-mapped radiance, sRGB")

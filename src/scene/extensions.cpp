@@ -15,12 +15,15 @@ namespace {
 using nlohmann::json;
 
 // Those that are read, and formats of textures, of which their readers tell.
-constexpr std::array<std::string_view, 15> read_here = {
-    "EXT_lights_image_based",  "EXT_mesh_gpu_instancing",         "EXT_meshopt_compression",
-    "KHR_meshopt_compression", "KHR_draco_mesh_compression",      "EXT_texture_webp",
-    "KHR_lights_punctual",     "KHR_materials_emissive_strength", "KHR_materials_pbrSpecularGlossiness",
-    "KHR_materials_unlit",     "KHR_mesh_quantization",           "KHR_node_visibility",
-    "KHR_texture_basisu",      "KHR_texture_transform",           "EXT_texture_avif"};
+constexpr std::array<std::string_view, 16> read_here = {
+    "EXT_lights_image_based",     "EXT_mesh_gpu_instancing",
+    "EXT_meshopt_compression",    "KHR_meshopt_compression",
+    "KHR_draco_mesh_compression", "EXT_texture_webp",
+    "KHR_lights_punctual",        "KHR_materials_emissive_strength",
+    "KHR_materials_transmission", "KHR_materials_pbrSpecularGlossiness",
+    "KHR_materials_unlit",        "KHR_mesh_quantization",
+    "KHR_node_visibility",        "KHR_texture_basisu",
+    "KHR_texture_transform",      "EXT_texture_avif"};
 
 // Of these diffuse light knows nothing: gloss, animation, physics, sound, data about the file.
 constexpr std::array<std::string_view, 30> without_effect = {"ADOBE_",

@@ -74,7 +74,35 @@ void measure_lights(Scene& scene) {
 struct Piece {
   Surface surface;
   std::vector<std::uint32_t> indices;
+  std::vector<glm::vec2> emission_at = {};  // of its vertices, from the first on
+  std::uint32_t first_vertex = 0;
 };
+
+// Puts even pieces in the place of those whose textures say where they are and where they shine.
+std::vector<Piece> cut_uneven(std::vector<Piece> pieces, Materials& materials, Scene& scene) {
+  std::size_t triangles = 0;
+  for (const auto& piece : pieces)
+    if (materials.uneven[piece.surface.material].any()) triangles += piece.indices.size() / 3;
+  const int times = cuts_for(triangles);
+  std::vector<Piece> result;
+  for (auto& piece : pieces) {
+    const std::uint32_t slot = piece.surface.material;
+    const Uneven uneven = materials.uneven[slot];
+    if (!uneven.any()) {
+      result.push_back(std::move(piece));
+      continue;
+    }
+    const Material material = materials.materials[slot];
+    for (auto& part : cut(material, uneven, piece.indices, piece.emission_at, piece.first_vertex, times,
+                          materials.textures, scene.vertices)) {
+      Piece even{piece.surface, std::move(part.indices)};
+      even.surface.material = static_cast<std::uint32_t>(materials.materials.size());
+      materials.materials.push_back(std::move(part.material));
+      result.push_back(std::move(even));
+    }
+  }
+  return result;
+}
 
 std::vector<Piece> read_pieces(const tinygltf::Model& model, const LoadOptions& options,
                                const Materials& materials, Scene& scene, Oddities& oddities) {
@@ -114,10 +142,13 @@ std::vector<Piece> read_pieces(const tinygltf::Model& model, const LoadOptions& 
                    .material = static_cast<std::uint32_t>(slot),
                    .body = body,
                    .light = owners.light.at(placed.light)},
-                  {}};
+                  {},
+                  {},
+                  static_cast<std::uint32_t>(scene.vertices.size())};
       const auto& weights = node.weights.empty() ? mesh.weights : node.weights;
       piece.indices = add_primitive(model, primitives[i], {name, i, body, placed.world, weights, poses},
-                                    materials.colour[slot], triangles_left, scene, oddities);
+                                    materials.colour[slot], materials.uneven[slot], piece.emission_at,
+                                    triangles_left, scene, oddities);
       if (!piece.indices.empty()) pieces.push_back(std::move(piece));
     }
   }
@@ -205,8 +236,9 @@ Scene read_scene(const std::filesystem::path& file, const LoadOptions& options, 
     Remarks told;  // once is enough
     model = parse_model(scene.unwrapped, file, told);
   }
-  Materials materials = read_materials(model, oddities.remarks);
-  std::vector<Piece> pieces = read_pieces(model, options, materials, scene, oddities);
+  Materials materials = read_materials(model);
+  std::vector<Piece> pieces =
+      cut_uneven(read_pieces(model, options, materials, scene, oddities), materials, scene);
   scene.materials = std::move(materials.materials);
   scene.textures = std::move(materials.textures);
   if (pieces.empty()) throw SceneError("has no triangles with an area: nothing to light");

@@ -1,10 +1,13 @@
 // Materials, and the textures that their base colours ask for.
+#include <cmath>
+
 #include "parts.hpp"
 
 namespace lichtveld::scene {
 namespace {
 
 constexpr const char* strength_extension = "KHR_materials_emissive_strength";
+constexpr const char* transmission_extension = "KHR_materials_transmission";
 constexpr const char* gloss_extension = "KHR_materials_pbrSpecularGlossiness";
 
 glm::vec3 colour(const std::vector<double>& rgb, double scale, double most, const std::string& what) {
@@ -66,9 +69,37 @@ Diffuse diffuse_of(const tinygltf::Material& material, const std::string& what) 
   return result;
 }
 
+float transmission_of(const tinygltf::Material& material, const std::string& what) {
+  const auto found = material.extensions.find(transmission_extension);
+  if (found == material.extensions.end() || !found->second.IsObject()) return 0;
+  const tinygltf::Value& factor = found->second.Get("transmissionFactor");
+  if (!found->second.Has("transmissionFactor")) return 0;
+  const double value = factor.IsNumber() ? factor.GetNumberAsDouble() : -1;
+  if (!(value >= 0 && value <= 1)) throw SceneError(what + ": transmissionFactor is no number of 0..1");
+  return static_cast<float>(value);
+}
+
+Uneven uneven_of(const tinygltf::Material& in, const glm::vec3& emission, const Diffuse& diffuse,
+                 TextureReader& reader, const tinygltf::Model& model, const std::string& what) {
+  Uneven result;
+  if (in.alphaMode == "MASK") result.alpha = Uneven::Alpha::mask;
+  if (in.alphaMode == "BLEND") result.alpha = Uneven::Alpha::blend;
+  result.cutoff = static_cast<float>(in.alphaCutoff);
+  result.alpha_factor = static_cast<float>(diffuse.factor.size() > 3 ? diffuse.factor[3] : 1);
+  if (!std::isfinite(result.cutoff) || !std::isfinite(result.alpha_factor))
+    throw SceneError(what + ": alphaCutoff or the base colour's alpha is not finite");
+  result.transmission = transmission_of(in, what);
+  if (in.emissiveTexture.index == -1 || emission == glm::vec3(0)) return result;
+  const std::string texture = what + ": emissiveTexture";
+  result.emission = reader.read(in.emissiveTexture, texture);
+  result.wrap = wrap_of(model, in.emissiveTexture, texture);
+  result.emission_at = coordinates_of(in.emissiveTexture, texture);
+  return result;
+}
+
 }  // namespace
 
-Materials read_materials(const tinygltf::Model& model, Remarks& remarks) {
+Materials read_materials(const tinygltf::Model& model) {
   Materials result;
   TextureReader reader(model);
   for (std::size_t i = 0; i < model.materials.size(); ++i) {
@@ -87,10 +118,7 @@ Materials read_materials(const tinygltf::Model& model, Remarks& remarks) {
       out.wrap = wrap_of(model, diffuse.texture, what);
       coordinates = coordinates_of(diffuse.texture, what);
     }
-    if (in.emissiveTexture.index != -1)
-      remarks.add("emissiveTexture is ignored, the whole surface emits", what);
-    if (in.alphaMode != "OPAQUE")
-      remarks.add("alphaMode " + in.alphaMode + " is ignored, the surface is opaque", what);
+    result.uneven.push_back(uneven_of(in, out.emission, diffuse, reader, model, what));
     result.materials.push_back(std::move(out));
     result.colour.push_back(coordinates);
   }
@@ -98,6 +126,7 @@ Materials read_materials(const tinygltf::Model& model, Remarks& remarks) {
   standard.name = "default";
   result.materials.push_back(standard);
   result.colour.emplace_back();
+  result.uneven.emplace_back();
   result.textures = std::move(reader.textures());
   return result;
 }

@@ -100,7 +100,9 @@ tinygltf::Model read_model(const fs::path& file, Remarks& remarks) {
   return parse_model(read_file(file, max_file_bytes), file, remarks);
 }
 
-nlohmann::json read_json(const fs::path& file) { return parse_json(read_file(file, max_file_bytes)); }
+nlohmann::json read_json(const fs::path& file) {
+  return parse_json(read_file(file, max_file_bytes));
+}
 
 tinygltf::Model parse_model(std::vector<std::uint8_t> contents, const fs::path& file, Remarks& remarks) {
   const std::vector<std::uint8_t> bytes = checked(std::move(contents), remarks);

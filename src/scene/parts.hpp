@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "cut.hpp"
 #include "lichtveld/scene/scene.hpp"
 #include "lichtveld/scene/unwrap.hpp"
 #include "remarks.hpp"
@@ -22,9 +23,10 @@ struct Materials {
   std::vector<Material> materials;         // as in the file, and behind them glTF's default material
   std::vector<Texture> textures;           // those that a base colour asks for
   std::vector<TextureCoordinates> colour;  // where a material's texture is read
+  std::vector<Uneven> uneven;              // what it has besides
 };
 
-Materials read_materials(const tinygltf::Model& model, Remarks& remarks);
+Materials read_materials(const tinygltf::Model& model);
 
 // A node of the scene. Nodes come in the order of the file.
 struct PlacedNode {
@@ -91,9 +93,11 @@ struct Placement {
 };
 
 // Appends a primitive's vertices to scene.vertices and returns its triangles' indices into them. `colour` as in
-// Materials. Takes what it reads from `triangles_left`, and throws SceneError where that is not enough.
+// Materials; `emission_at` gets the coordinate of each new vertex in the emission's texture, if there is one.
+// Takes what it reads from `triangles_left`, and throws SceneError where that is not enough.
 std::vector<std::uint32_t> add_primitive(const tinygltf::Model& model, const tinygltf::Primitive& primitive,
                                          const Placement& placement, const TextureCoordinates& colour,
+                                         const Uneven& uneven, std::vector<glm::vec2>& emission_at,
                                          std::size_t& triangles_left, Scene& scene, Oddities& oddities);
 
 }  // namespace lichtveld::scene

@@ -15,7 +15,7 @@ namespace {
 using nlohmann::json;
 
 constexpr std::array gone = {"KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_meshopt_compression",
-                            "EXT_mesh_gpu_instancing"};
+                             "EXT_mesh_gpu_instancing"};
 
 constexpr std::uint32_t json_chunk_type = 0x4e4f534a, binary_chunk_type = 0x004e4942;
 
@@ -197,7 +197,8 @@ int PlainFile::carried_mesh(int mesh) {
   for (std::size_t i = 0; i < in.primitives.size(); ++i) {
     const auto& primitive = in.primitives[i];
     json out = without_compression(copy["primitives"].at(i));
-    if (primitive.indices >= 0) out["indices"] = carried(primitive.indices, TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER);
+    if (primitive.indices >= 0)
+      out["indices"] = carried(primitive.indices, TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER);
     out["attributes"] = json::object();
     const auto whole = [&](int accessor, const std::string& semantic) {
       const auto [known, is_new] = carried_vertices_.try_emplace(accessor);
@@ -206,7 +207,8 @@ int PlainFile::carried_mesh(int mesh) {
       std::iota(all.begin(), all.end(), 0u);
       return known->second = chosen(accessor, all, semantic);
     };
-    for (const auto& [semantic, accessor] : primitive.attributes) out["attributes"][semantic] = whole(accessor, semantic);
+    for (const auto& [semantic, accessor] : primitive.attributes)
+      out["attributes"][semantic] = whole(accessor, semantic);
     for (std::size_t t = 0; t < primitive.targets.size(); ++t)
       for (const auto& [semantic, accessor] : primitive.targets[t])
         out["targets"][t][semantic] = whole(accessor, semantic);

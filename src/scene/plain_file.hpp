@@ -20,14 +20,14 @@ class PlainFile {
  public:
   using Bytes = std::vector<unsigned char>;
 
-  // Of a file's JSON and its model as it was read: with a scene, and each instance a node. The model must outlive
-  // it.
+  // Of a file's JSON and its model as it was read: with a scene, and each instance a node. The model must
+  // outlive it.
   PlainFile(nlohmann::json root, const tinygltf::Model& model);
 
   nlohmann::json& root() { return root_; }
 
-  // Numbers of the accessors that are written: one of the model's, whole, or chosen elements of it for vertices;
-  // or one of our own. `target` is what its buffer view is for, 0 for neither vertices nor indices.
+  // Numbers of the accessors that are written: one of the model's, whole, or chosen elements of it for
+  // vertices; or one of our own. `target` is what its buffer view is for, 0 for neither vertices nor indices.
   int carried(int accessor, int target = 0);
   int chosen(int accessor, std::span<const std::uint32_t> elements, const std::string& semantic);
   int add_vec2(std::span<const float> numbers);
@@ -57,7 +57,7 @@ class PlainFile {
   nlohmann::json accessors_ = nlohmann::json::array(), views_ = nlohmann::json::array(),
                  meshes_ = nlohmann::json::array();
   std::map<int, int> carried_, carried_meshes_, carried_vertices_;  // by the file's
-  std::vector<bool> is_new_;  // by node: its mesh is an added one
+  std::vector<bool> is_new_;                                        // by node: its mesh is an added one
   Bytes binary_;
 };
 

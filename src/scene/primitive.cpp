@@ -101,6 +101,14 @@ std::optional<Accessor> colours_of(const tinygltf::Model& model, const tinygltf:
   return coordinates(model, primitive, name, vertices, what, "");
 }
 
+glm::vec2 texture_place(const TextureCoordinates& of, const std::optional<Accessor>& coordinates,
+                        std::uint32_t i, const std::string& what) {
+  const glm::vec2 at = of.transform * glm::dvec3(coordinates ? coordinates->vec2(i) : glm::vec2(0), 1);
+  if (!std::isfinite(at.x) || !std::isfinite(at.y))
+    throw SceneError(what + ": the texture coordinate of vertex " + std::to_string(i) + " is not finite");
+  return at;
+}
+
 // COLOR_0.
 std::optional<Accessor> tints_of(const tinygltf::Model& model, const tinygltf::Primitive& primitive,
                                  std::size_t vertices, const std::string& what) {
@@ -159,6 +167,7 @@ std::optional<std::vector<Triangle>> triangles_of(const tinygltf::Model& model,
 
 std::vector<std::uint32_t> add_primitive(const tinygltf::Model& model, const tinygltf::Primitive& primitive,
                                          const Placement& placement, const TextureCoordinates& colour,
+                                         const Uneven& uneven, std::vector<glm::vec2>& emission_at,
                                          std::size_t& triangles_left, Scene& scene, Oddities& oddities) {
   const std::string what = "node \"" + placement.node + "\", primitive " + std::to_string(placement.primitive);
   const auto triangles = triangles_of(model, primitive, triangles_left, what);
@@ -172,6 +181,8 @@ std::vector<std::uint32_t> add_primitive(const tinygltf::Model& model, const tin
       coordinates(model, primitive, "TEXCOORD_1", vertices, what,
                   "unwrap the scene into a second UV map without overlaps (the light map's)");
   const std::optional<Accessor> colours = colours_of(model, primitive, colour.set, vertices, what, oddities);
+  const std::optional<Accessor> emissions =
+      colours_of(model, primitive, uneven.emission_at.set, vertices, what, oddities);
   const std::optional<Accessor> tints = tints_of(model, primitive, vertices, what);
   const bool smooth = has_good_normals(shape, *triangles, oddities);
 
@@ -206,10 +217,8 @@ std::vector<std::uint32_t> add_primitive(const tinygltf::Model& model, const tin
       }
       const glm::dvec3 direction = smooth ? shape.transform(i).cofactors * shape.normal(i) : cross;
       const double length = glm::length(direction);
-      const glm::vec2 at = colour.transform * glm::dvec3(colours ? colours->vec2(i) : glm::vec2(0), 1);
-      if (!std::isfinite(at.x) || !std::isfinite(at.y)) {
-        throw SceneError(what + ": the texture coordinate of vertex " + std::to_string(i) + " is not finite");
-      }
+      const glm::vec2 at = texture_place(colour, colours, i, what);
+      if (uneven.emission >= 0) emission_at.push_back(texture_place(uneven.emission_at, emissions, i, what));
       // A flattening node can leave a normal without length; the face's own is right then.
       scene.vertices.push_back({p[k], glm::normalize(length > 0 ? direction : cross), uv[k], at, placement.body,
                                 tint_of(tints, i, what)});

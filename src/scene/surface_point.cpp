@@ -57,15 +57,25 @@ Between between(float coordinate, std::uint32_t pixels, Wrap wrap) {
   return {pixel_at(first), pixel_at(first + 1), static_cast<float>(at - below)};
 }
 
+// What `of(texture, x, y)` says of the four pixels around a place, by their shares.
+template <typename Of>
+auto filtered(const Texture& texture, glm::vec2 at, std::array<Wrap, 2> wrap, const Of& of) {
+  const Between x = between(at.x, texture.width, wrap[0]), y = between(at.y, texture.height, wrap[1]);
+  const auto upper = glm::mix(of(texture, x.first, y.first), of(texture, x.second, y.first), x.share);
+  const auto lower = glm::mix(of(texture, x.first, y.second), of(texture, x.second, y.second), x.share);
+  return glm::mix(upper, lower, y.share);
+}
+
 }  // namespace
 
 glm::vec3 sample_srgb(const Texture& texture, glm::vec2 at, std::array<Wrap, 2> wrap) {
-  const Between x = between(at.x, texture.width, wrap[0]), y = between(at.y, texture.height, wrap[1]);
-  const glm::vec3 upper =
-      glm::mix(pixel(texture, x.first, y.first), pixel(texture, x.second, y.first), x.share);
-  const glm::vec3 lower =
-      glm::mix(pixel(texture, x.first, y.second), pixel(texture, x.second, y.second), x.share);
-  return glm::mix(upper, lower, y.share);
+  return filtered(texture, at, wrap, pixel);
+}
+
+float sample_alpha(const Texture& texture, glm::vec2 at, std::array<Wrap, 2> wrap) {
+  return filtered(texture, at, wrap, [](const Texture& of, std::uint32_t x, std::uint32_t y) {
+    return static_cast<float>(of.rgba[4 * (std::size_t{y} * of.width + x) + 3]) / 255;
+  });
 }
 
 SurfacePoint pulled_inside(const SurfacePoint& point) {

@@ -143,13 +143,14 @@ std::vector<double> posed_areas(const tinygltf::Model& model, const UsedMesh& me
   const auto& primitives = model.meshes[static_cast<std::size_t>(number)].primitives;
   for (const auto& sheet : mesh.sheets) {
     const Vertices vertices(model, primitives[sheet.primitive],
-                            {.node = use.name, .world = use.world, .weights = weights, .poses = poses}, sheet.what);
+                            {.node = use.name, .world = use.world, .weights = weights, .poses = poses},
+                            sheet.what);
     double area = 0;
     for (const auto& triangle : sheet.triangles) {
       Corners corners;
       for (std::size_t k = 0; k < 3; ++k)
-        corners[k] = glm::vec3(vertices.transform(triangle[k]).world *
-                               glm::dvec4(vertices.position(triangle[k]), 1));
+        corners[k] =
+            glm::vec3(vertices.transform(triangle[k]).world * glm::dvec4(vertices.position(triangle[k]), 1));
       area += area_of(corners);
     }
     areas.push_back(area);
@@ -189,7 +190,8 @@ double area_in_world(const UsedMesh& mesh, std::size_t sheet, const Use& use) {
   return area;
 }
 
-// By how much longer things are in the world than in the mesh, for a sheet as a whole, times the node's density.
+// By how much longer things are in the world than in the mesh, for a sheet as a whole, times the node's
+// density.
 double scale_of(const UsedMesh& mesh, std::size_t sheet, const Use& use) {
   double inside = 0;
   for (const auto& corners : mesh.sheets[sheet].corners) inside += area_of(corners);
@@ -574,7 +576,8 @@ class Writer {
     json out = without_compression(
         file_.root()["meshes"][static_cast<std::size_t>(mesh)]["primitives"][sheet.primitive]);
     const auto vertices = [&](const std::string& semantic, int accessor) {
-      return semantic == "NORMAL" ? normals_of(accessor, split) : file_.chosen(accessor, split.elements, semantic);
+      return semantic == "NORMAL" ? normals_of(accessor, split)
+                                  : file_.chosen(accessor, split.elements, semantic);
     };
     out["mode"] = TINYGLTF_MODE_TRIANGLES;
     out["attributes"] = json::object();

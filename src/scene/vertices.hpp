@@ -25,8 +25,8 @@ struct Transform {
       cofactors;  // for normals: the inverse transpose up to a positive factor, for singular matrices too
 };
 
-// Throws SceneError where vertex `i` is nowhere, or so far that 32-bit positions are coarser than 6 cm: such scenes
-// have their unit wrong.
+// Throws SceneError where vertex `i` is nowhere, or so far that 32-bit positions are coarser than 6 cm: such
+// scenes have their unit wrong.
 void check_place(const glm::dvec3& place, std::size_t i, const std::string& what);
 
 class Vertices {

@@ -5,7 +5,7 @@ import { createServer } from 'node:net';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { test } from 'node:test';
-import { freePort, startPlay } from './programs.js';
+import { freePort, scenePath, startPlay } from './programs.js';
 
 /** The processes that were started by this one. */
 const childrenOf = (pid) =>
@@ -73,13 +73,25 @@ test('a program that ends again and again is given up with its reason', async (t
   const folder = mkdtempSync(join(tmpdir(), 'lichtveld-e2e-'));
   t.after(() => rmSync(folder, { recursive: true, force: true }));
   const broken = join(folder, 'lichtveld');
-  writeFileSync(broken, '#!/bin/sh\nexit 1\n', { mode: 0o755 });
+  // It gives out the scene as it is, and serves nobody.
+  writeFileSync(broken, '#!/bin/sh\n[ "$1" = unwrap ] || exit 1\nexec cp "$2" "$4"\n', { mode: 0o755 });
   const program = startPlay(t, { port: await freePort(), env: { LICHTVELD: broken } });
   assert.deepEqual(await program.exited, [1, null]);
   assert.match(
     program.output,
     /starting it again in 8 s \(5 of 5\)[^]*exit code 1, for the 6th time in a row; ending/,
   );
+  assert.equal(program.stdout, '');
+});
+
+test('a scene that cannot be used ends it with 2 and its reason', async (t) => {
+  const folder = mkdtempSync(join(tmpdir(), 'lichtveld-e2e-'));
+  t.after(() => rmSync(folder, { recursive: true, force: true }));
+  const scene = join(folder, 'cut.glb');
+  writeFileSync(scene, readFileSync(scenePath).subarray(0, 500));
+  const program = startPlay(t, { port: await freePort(), scene });
+  assert.deepEqual(await program.exited, [2, null]);
+  assert.match(program.output, /cut\.glb: truncated/);
   assert.equal(program.stdout, '');
 });
 

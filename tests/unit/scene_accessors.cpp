@@ -95,7 +95,7 @@ TEST(SceneAccessors, BadSparsePartsAreRefused) {
           b.gltf["accessors"][0]["count"] = 1ull << 62;
           b.primitive(0).erase("indices");
         },
-        "fewer elements than POSITION"}});
+        "corners are no whole number"}});
   sparse(builder)["count"] = 5;
   EXPECT_THAT(error_of_bytes(builder.glb()), ::testing::HasSubstr(what));
 }

@@ -6,6 +6,7 @@
 
 #include "lichtveld/scene/scene.hpp"
 #include "lichtveld/scene/surface_point.hpp"
+#include "remarks.hpp"
 #include "scene_damage.hpp"
 #include "scene_log.hpp"
 #include "scene_pictures.hpp"
@@ -290,14 +291,11 @@ TEST(SceneMaterials, SpecularGlossinessHasItsOwnColour) {
 
 TEST(SceneMaterials, TheSameOfManyIsOneLine) {
   LogCapture log;
-  SceneBuilder builder = sound();
-  for (int i = 0; i < 20; ++i) {
-    builder.material(glm::vec3(1));
-    builder.gltf["materials"].back()["alphaMode"] = "BLEND";
-  }
-  loaded(builder);
+  Remarks remarks;
+  for (int i = 0; i < 20; ++i) remarks.add("is odd", "material " + std::to_string(i));
+  remarks.tell("a.glb");
   const std::string lines = log.take();
-  EXPECT_THAT(lines, ::testing::HasSubstr("material \"material 1\" and 19 more: alphaMode BLEND"));
+  EXPECT_THAT(lines, ::testing::HasSubstr("a.glb: material 0 and 19 more: is odd"));
   EXPECT_EQ(std::ranges::count(lines, '\n'), 1) << lines;
 }
 

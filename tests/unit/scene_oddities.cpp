@@ -39,13 +39,6 @@ TEST(SceneOddities, EachIsWarnedOf) {
          b.gltf["nodes"].push_back({{"name", "elsewhere"}});
        },
        "node \"floor\": has a skin whose joints are not in the scene; it is ignored"},
-      {"EmissiveTexture",
-       [](auto& b) {
-         b.gltf["materials"][0]["emissiveTexture"] = {{"index", 0}};
-       },
-       "emissiveTexture is ignored"},
-      {"AlphaMode", [](auto& b) { b.gltf["materials"][0]["alphaMode"] = "BLEND"; },
-       "alphaMode BLEND is ignored, the surface is opaque"},
   };
   for (const SpoiltCase& one : odd) {
     SceneBuilder builder = sound();

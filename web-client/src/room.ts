@@ -4,7 +4,6 @@ import {
   BoxGeometry,
   Color,
   ColorManagement,
-  DoubleSide,
   LinearSRGBColorSpace,
   Mesh,
   MeshBasicMaterial,
@@ -20,6 +19,7 @@ import { LightMap } from './light_map';
 import { outline } from './outline';
 import type { Place } from './protocol';
 import type { SceneFile } from './scene_file';
+import { Surfaces } from './surfaces';
 
 // Colours go to the screen as they are given, which is sRGB: see LightMap.
 ColorManagement.enabled = false;
@@ -51,11 +51,7 @@ function drawsInSoftware(): boolean {
 export class Room {
   readonly camera = new PerspectiveCamera(50, 1, 0.01, 1000);
   readonly lightMap = new LightMap();
-  /** Not drawn before the first map: without light there is nothing to see. */
-  readonly surfaces = {
-    oneSided: new MeshBasicMaterial({ visible: false }),
-    twoSided: new MeshBasicMaterial({ visible: false, side: DoubleSide }),
-  };
+  readonly surfaces = new Surfaces();
   /** Metres: the room's height, by which speeds are measured. */
   height = 1;
   #renderer: WebGLRenderer;
@@ -115,12 +111,7 @@ export class Room {
 
   setMap(picture: ImageBitmap): void {
     this.lightMap.show(picture);
-    for (const surface of Object.values(this.surfaces)) {
-      if (surface.map) continue;
-      surface.visible = true;
-      surface.map = this.lightMap.texture;
-      surface.needsUpdate = true;
-    }
+    this.surfaces.show(this.lightMap.texture);
     this.invalidate();
   }
 

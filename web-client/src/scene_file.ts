@@ -1,8 +1,9 @@
 import { sha256 } from '@noble/hashes/sha2';
 import { bytesToHex } from '@noble/hashes/utils';
-import { DoubleSide, Mesh, Object3D, type Material } from 'three';
+import { Mesh, Object3D, type Material } from 'three';
 import { GLTFLoader, type GLTF } from 'three/addons/loaders/GLTFLoader.js';
 import { Backoff } from './backoff';
+import type { Surfaces } from './surfaces';
 
 export interface SceneFile {
   readonly root: Object3D;
@@ -12,12 +13,6 @@ export interface SceneFile {
   node(name: string): Object3D | undefined;
   /** Of the file's bytes, 64 hex digits. crypto.subtle is missing on plain http, hence the library. */
   readonly sha256: string;
-}
-
-/** What replaces the file's materials: the light map says all there is to see. */
-export interface Surfaces {
-  readonly oneSided: Material;
-  readonly twoSided: Material;
 }
 
 /** Where the scene is, and the token of the link by which we join where the room wants one. */
@@ -83,8 +78,7 @@ const reasonOf = (error: unknown): string => (error instanceof Error ? error.mes
 function prepare(root: Object3D, surfaces: Surfaces): void {
   root.traverse((object) => {
     if (!(object instanceof Mesh)) return;
-    const { side } = object.material as Material;
-    object.material = side === DoubleSide ? surfaces.twoSided : surfaces.oneSided;
+    object.material = surfaces.like(object.material as Material);
     if (!object.geometry.hasAttribute('uv1')) throw new Error(`the mesh ${object.name} has no TEXCOORD_1`);
   });
 }

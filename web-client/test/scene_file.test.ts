@@ -2,11 +2,11 @@ import assert from 'node:assert/strict';
 import { createServer } from 'node:http';
 import type { AddressInfo } from 'node:net';
 import { test, type TestContext } from 'node:test';
-import { MeshBasicMaterial } from 'three';
 import { Backoff } from '../src/backoff';
 import { fetchScene } from '../src/scene_file';
+import { Surfaces } from '../src/surfaces';
 
-const surfaces = { oneSided: new MeshBasicMaterial(), twoSided: new MeshBasicMaterial() };
+const surfaces = new Surfaces();
 
 /** A server that gives these answers one after the other. */
 async function serve(t: TestContext, answers: { status: number; body: string }[]): Promise<string> {

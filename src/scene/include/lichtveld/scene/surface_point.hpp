@@ -20,6 +20,9 @@ glm::vec3 weights(const SurfacePoint& point);
 // texture coordinate: (0, 0) is the upper left corner of the first pixel.
 glm::vec3 sample_srgb(const Texture& texture, glm::vec2 at, std::array<Wrap, 2> wrap = {});
 
+// Its alpha there, 0..1.
+float sample_alpha(const Texture& texture, glm::vec2 at, std::array<Wrap, 2> wrap = {});
+
 // What a surface of that material reflects there: 0..1, linear.
 glm::vec3 albedo_at(const Scene& scene, const Material& material, const SurfacePoint& point);
 
