@@ -6,8 +6,8 @@
 #include <map>
 #include <utility>
 
-#include "flat_triangle.hpp"
 #include "lichtveld/scene/atlas.hpp"
+#include "unwrap/flat_triangle.hpp"
 
 namespace lichtveld::scene {
 namespace {
