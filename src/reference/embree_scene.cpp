@@ -118,7 +118,11 @@ bool EmbreeScene::is_one_sheet(const Receiver& from, std::uint32_t triangle) con
   query.contact = false;
   query.backs = true;
   const auto ray = traced(scene_.get(), query, from.face);
-  return !hits(ray) || glm::dot(geometry_.face(ray.hit.primID), from.face) <= 0;
+  if (!hits(ray) || glm::dot(geometry_.face(ray.hit.primID), from.face) <= 0) return true;
+  // The back of another sheet has a front in the same place, and nothing was left there.
+  query.backs = false;
+  const auto front = traced(scene_.get(), query, from.face);
+  return hits(front) && front.ray.tfar <= ray.ray.tfar + start_behind;
 }
 
 }  // namespace lichtveld::reference

@@ -239,20 +239,25 @@ bool RayIndex::contact(std::uint32_t body, const glm::vec3& offset, const glm::v
   const auto look = [&](const glm::vec3& start, float reach) {
     auto ray = ray_along(start, face, reach);
     intersect(trees_->of_body(body), context, ray);
-    return ray.hit;
+    return ray;
   };
   context.face = &face;
   context.triangle = triangle;
-  const RTCHit on_it = look(surface - skin_ * face, 2 * skin_);
+  const RTCHit on_it = look(surface - skin_ * face, 2 * skin_).hit;
   if (on_it.geomID == RTC_INVALID_GEOMETRY_ID) return false;
   if (!of_one_node(scene_, triangle, trees_->parts[body][on_it.geomID].triangles[on_it.primID])) return true;
   // Two faces of a node on each other are where something of it stands on something else of it, if one leaves
   // that going on, and a sheet of two sides if not.
   context.face = nullptr;
   context.backs = true;
-  const RTCHit next = look(surface + 2 * skin_ * face, std::numeric_limits<float>::infinity());
-  return next.geomID != RTC_INVALID_GEOMETRY_ID &&
-         next.Ng_x * face.x + next.Ng_y * face.y + next.Ng_z * face.z > 0;
+  const glm::vec3 above = surface + 2 * skin_ * face;
+  const RTCRayHit next = look(above, std::numeric_limits<float>::infinity());
+  if (next.hit.geomID == RTC_INVALID_GEOMETRY_ID ||
+      next.hit.Ng_x * face.x + next.hit.Ng_y * face.y + next.hit.Ng_z * face.z <= 0)
+    return false;
+  // The back of another such sheet has a front in the same place, and nothing was left there.
+  context.backs = false;
+  return look(above, next.ray.tfar + 2 * skin_).hit.geomID == RTC_INVALID_GEOMETRY_ID;
 }
 
 }  // namespace lichtveld::scene

@@ -290,7 +290,6 @@ TEST_F(RaysMethod, DoubleSidedSheetsSendFromTheSideThatIsLit) {
   EXPECT_LT(std::abs(reference::error_of(irradiance, truth.texels).bias), 0.005);
 }
 
-// A wall whose panels have charts that hold no texel's centre.
 // Two faces that lie on each other and look away from each other are a sheet, and no body on a floor.
 TEST_F(RaysMethod, ASheetOfTwoFacesIsLitOnBoth) {
   for (const bool movable : {false, true}) {
@@ -316,6 +315,33 @@ TEST_F(RaysMethod, ASheetOfTwoFacesIsLitOnBoth) {
   }
 }
 
+// Leaves of one mesh above each other, double-sided and without TEXCOORD_1: what lies above a leaf's back is no
+// body's inside.
+TEST_F(RaysMethod, LeavesAboveEachOtherAreNoBody) {
+  SceneBuilder builder;
+  builder.box("room", {-2, 0, -2}, {2, 3, 2}, {0, 0, 1, 1}, builder.material(glm::vec3(0), glm::vec3(1)), true);
+  std::vector<glm::vec3> corners;
+  std::vector<std::uint16_t> indices;
+  for (std::uint16_t leaf = 0; leaf < 9; ++leaf) {
+    const float y = 0.8f + 0.15f * static_cast<float>(leaf), x = 0.1f * static_cast<float>(leaf % 3);
+    for (const glm::vec2 at : {glm::vec2(0, 0), glm::vec2(1, 0), glm::vec2(1, 1), glm::vec2(0, 1)})
+      corners.emplace_back(x + at.x - 0.6f, y + 0.05f * at.x, at.y - 0.5f);
+    for (const int corner : {0, 2, 1, 0, 3, 2})
+      indices.push_back(static_cast<std::uint16_t>(4 * leaf + corner));
+  }
+  const std::vector<glm::vec2> atlas(corners.size());
+  builder.mesh("leaves", corners, atlas, indices, builder.material(glm::vec3(0.5f), glm::vec3(0), true));
+  for (auto& mesh : builder.gltf["meshes"]) mesh["primitives"][0]["attributes"].erase("TEXCOORD_1");
+  const auto scene = loaded(builder);
+  const auto traced = reference::trace(scene, {}, {.size = 64, .spp = 64});
+  const auto lit = of(texels_of(scene, {.size = 64, .psf = 96}), "leaves"),
+             truth = of(texels(scene, 64, traced.texels, {}), "leaves");
+  EXPECT_NEAR(mean(lit) / mean(truth), 1, 0.01);
+  for (const auto* map : {&lit, &truth})
+    for (const auto& texel : *map) ASSERT_GT(texel.irradiance.g, 0.2) << texel.position.y;
+}
+
+// A wall whose panels have charts that hold no texel's centre.
 TEST_F(RaysMethod, ChartsWithoutATexelSendTheirLight) {
   const auto bright_mean = [&](bool small_charts) {
     SceneBuilder builder;
