@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "lichtveld/scene/atlas.hpp"
+#include "triangle.hpp"
 #include "unwrap/flat_triangle.hpp"
 
 namespace lichtveld::scene {
@@ -23,16 +24,11 @@ std::array<glm::dvec2, 3> chart_of(const Scene& scene, std::uint32_t triangle, s
   return corners;
 }
 
-// Whether two triangles have the same corners in the same order: such copies may share texels.
-bool lie_on_each_other(const Scene& scene, std::uint32_t a, std::uint32_t b) {
-  const auto corner = [&](std::uint32_t triangle, std::size_t k) {
-    return scene.vertices[scene.indices[std::size_t{3} * triangle + k % 3]].position;
-  };
-  for (std::size_t turn = 0; turn < 3; ++turn)
-    if (corner(a, 0) == corner(b, turn) && corner(a, 1) == corner(b, turn + 1) &&
-        corner(a, 2) == corner(b, turn + 2))
-      return true;
-  return false;
+Corners corners_of(const Scene& scene, std::uint32_t triangle) {
+  Corners corners;
+  for (std::size_t k = 0; k < 3; ++k)
+    corners[k] = scene.vertices[scene.indices[std::size_t{3} * triangle + k]].position;
+  return corners;
 }
 
 using Overlaps = std::map<std::pair<std::string, std::string>, std::uint64_t>;
@@ -77,7 +73,8 @@ std::uint32_t check_atlas(const Scene& scene, std::uint32_t size) {
       if (!triangle) continue;
       triangle->for_cells(margin, size, [&](std::int64_t i, std::int64_t j) {
         Owner& owner = owners[static_cast<std::size_t>(j * size + i)];
-        if (owner.triangle != none && !lie_on_each_other(scene, owner.triangle, number)) {
+        if (owner.triangle != none &&
+            !are_copies(corners_of(scene, owner.triangle), corners_of(scene, number))) {
           const auto& [a, b] = std::minmax(scene.surfaces[owner.surface].node, surface.node);
           ++overlaps[{a, b}];
           ++shared;

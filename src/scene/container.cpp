@@ -17,6 +17,7 @@ using nlohmann::json;
 constexpr int max_nesting = 64;  // JSON levels; tinygltf recurses into extras, exporters need < 20
 constexpr std::size_t max_json_bytes = 64u << 20;   // a parsed document takes several times its text
 constexpr std::size_t max_buffer_bytes = 1u << 30;  // over all buffers
+
 std::uint32_t little_endian(std::span<const std::uint8_t> bytes, std::size_t at) {
   return bytes[at] | bytes[at + 1] << 8 | bytes[at + 2] << 16 | std::uint32_t{bytes[at + 3]} << 24;
 }

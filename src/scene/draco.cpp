@@ -12,6 +12,7 @@
 
 #include "compression.hpp"
 #include "lichtveld/scene/scene.hpp"
+#include "model.hpp"
 
 namespace lichtveld::scene {
 namespace {
@@ -188,19 +189,10 @@ class Writer {
   std::string what_;
 };
 
-std::span<const unsigned char> bytes_of(const tinygltf::Model& model, std::size_t view_index,
-                                        const std::string& what) {
-  if (view_index >= model.bufferViews.size())
-    throw SceneError(what + ": there is no buffer view " + std::to_string(view_index));
-  const tinygltf::BufferView& view = model.bufferViews[view_index];
-  // Views were checked against their buffers before.
-  return std::span(model.buffers[static_cast<std::size_t>(view.buffer)].data)
-      .subspan(view.byteOffset, view.byteLength);
-}
-
 void decompress(tinygltf::Model& model, tinygltf::Primitive& primitive, const tinygltf::Value& extension,
                 std::size_t& bytes_left, const std::string& what) {
-  const auto mesh = decode(bytes_of(model, count_of(extension, "bufferView", what), what), bytes_left, what);
+  const auto mesh =
+      decode(bytes_of_view(model, count_of(extension, "bufferView", what), what), bytes_left, what);
   if (!extension.Get("attributes").IsObject()) throw SceneError(what + ": has no attributes");
   const tinygltf::Value& ids = extension.Get("attributes");
   Writer writer(*mesh, model, bytes_left, what);

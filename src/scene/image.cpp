@@ -7,25 +7,27 @@
 #include <algorithm>
 #include <string_view>
 
+#include "model.hpp"
+
 namespace lichtveld::scene {
 namespace {
 
 bool holds(std::span<const unsigned char> bytes, std::size_t at, std::string_view text) {
-  return bytes.size() >= at + text.size() && std::equal(text.begin(), text.end(), bytes.begin() + at);
+  return bytes.size() >= at + text.size() &&
+         std::equal(text.begin(), text.end(), bytes.begin() + static_cast<std::ptrdiff_t>(at),
+                    [](char a, unsigned char b) { return static_cast<unsigned char>(a) == b; });
 }
 
-// The two formats of glTF 2.0, by their first bytes, as OpenImageIO calls them.
-const char* format_of(std::span<const unsigned char> bytes) {
-  if (bytes.size() > 8 && bytes[0] == 0x89 && bytes[1] == 'P' && bytes[2] == 'N' && bytes[3] == 'G')
-    return "png";
-  if (bytes.size() > 3 && bytes[0] == 0xff && bytes[1] == 0xd8 && bytes[2] == 0xff) return "jpeg";
-  return nullptr;
-}
-
-void check_pixels(std::uint64_t pixels, std::size_t max_pixels, const std::string& what) {
-  if (pixels > max_pixels)
-    throw SceneError(what + ", of " + std::to_string(pixels) +
+// Without pixels yet, but with room for them.
+Texture texture_of(std::size_t width, std::size_t height, std::size_t max_pixels, const std::string& what) {
+  if (width * height > max_pixels)
+    throw SceneError(what + ", of " + std::to_string(width * height) +
                      " pixels, is too large: 64 million are allowed over all textures");
+  Texture texture;
+  texture.width = static_cast<std::uint32_t>(width);
+  texture.height = static_cast<std::uint32_t>(height);
+  texture.rgba.resize(4 * width * height);
+  return texture;
 }
 
 // By its own library: OpenImageIO multiplies colours by alpha, and the pixels of a hole are lost.
@@ -33,12 +35,8 @@ Texture decode_webp(std::span<const unsigned char> bytes, std::size_t max_pixels
   WebPBitstreamFeatures features;
   if (WebPGetFeatures(bytes.data(), bytes.size(), &features) != VP8_STATUS_OK || features.has_animation)
     throw SceneError(what + " does not decode: a damaged or moving WebP");
-  Texture texture;
-  texture.width = static_cast<std::uint32_t>(features.width);
-  texture.height = static_cast<std::uint32_t>(features.height);
-  const std::size_t pixels = std::size_t{texture.width} * texture.height;
-  check_pixels(pixels, max_pixels, what);
-  texture.rgba.resize(4 * pixels);
+  Texture texture = texture_of(static_cast<std::size_t>(features.width),
+                               static_cast<std::size_t>(features.height), max_pixels, what);
   if (!WebPDecodeRGBAInto(bytes.data(), bytes.size(), texture.rgba.data(), texture.rgba.size(),
                           4 * features.width))
     throw SceneError(what + " does not decode: a damaged WebP");
@@ -47,10 +45,24 @@ Texture decode_webp(std::span<const unsigned char> bytes, std::size_t max_pixels
 
 }  // namespace
 
+std::span<const unsigned char> encoded_bytes(const tinygltf::Model& model, const tinygltf::Image& image) {
+  if (image.bufferView < 0) return image.image;
+  return bytes_of_view(model, static_cast<std::size_t>(image.bufferView), "an image");
+}
+
+const char* format_of(std::span<const unsigned char> bytes) {
+  if (holds(bytes, 0, "\x89PNG")) return "png";
+  if (holds(bytes, 0, "\xff\xd8\xff")) return "jpeg";
+  if (holds(bytes, 0, "RIFF") && holds(bytes, 8, "WEBP")) return "webp";
+  if (holds(bytes, 1, "KTX 2")) return "ktx2";
+  return nullptr;
+}
+
 Texture decode_image(std::span<const unsigned char> bytes, std::size_t max_pixels, const std::string& what) {
-  if (holds(bytes, 0, "RIFF") && holds(bytes, 8, "WEBP")) return decode_webp(bytes, max_pixels, what);
   const char* format = format_of(bytes);
-  if (!format && holds(bytes, 1, "KTX 2"))
+  const std::string_view name = format ? format : "";
+  if (name == "webp") return decode_webp(bytes, max_pixels, what);
+  if (name == "ktx2")
     throw SceneError(what +
                      " is a KTX2, which is not read; convert it with npx @gltf-transform/cli "
                      "ktxdecompress in.glb out.glb");
@@ -70,19 +82,15 @@ Texture decode_image(std::span<const unsigned char> bytes, std::size_t max_pixel
   if (spec.width < 1 || spec.height < 1 || spec.nchannels < 1 || spec.nchannels > 4) {
     throw SceneError(what + " has no pixels of 1 to 4 channels");
   }
-  Texture texture;
-  texture.width = static_cast<std::uint32_t>(spec.width);
-  texture.height = static_cast<std::uint32_t>(spec.height);
-  const std::size_t pixels = std::size_t{texture.width} * texture.height;
-  check_pixels(pixels, max_pixels, what);
-
+  Texture texture =
+      texture_of(static_cast<std::size_t>(spec.width), static_cast<std::size_t>(spec.height), max_pixels, what);
+  const std::size_t pixels = texture.rgba.size() / 4;
   const auto channels = static_cast<std::size_t>(spec.nchannels);
   std::vector<std::uint8_t> raw(pixels * channels);
   if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::UINT8, raw.data())) {
     const std::string reason = input->geterror();
     throw SceneError(what + " does not decode: " + reason);
   }
-  texture.rgba.resize(pixels * 4);
   const bool grey = channels < 3;
   const bool alpha = channels == 2 || channels == 4;
   for (std::size_t i = 0; i < pixels; ++i) {

@@ -5,6 +5,7 @@
 
 #include "compression.hpp"
 #include "lichtveld/scene/scene.hpp"
+#include "model.hpp"
 
 namespace lichtveld::scene {
 namespace {
@@ -89,10 +90,7 @@ void decompress_meshopt(tinygltf::Model& model, std::size_t& bytes_left) {
       const std::string what = "buffer view " + std::to_string(i) + ": " + name;
       const Packed packed = packed_of(found->second, what);
       tinygltf::BufferView& view = model.bufferViews[i];
-      // The view was checked against its buffer before.
-      const auto& buffer = model.buffers[static_cast<std::size_t>(view.buffer)].data;
-      auto bytes =
-          decode(std::span(buffer).subspan(view.byteOffset, view.byteLength), packed, bytes_left, what);
+      auto bytes = decode(bytes_of_view(model, i, what), packed, bytes_left, what);
       view.buffer = static_cast<int>(model.buffers.size());
       view.byteOffset = 0;
       view.byteLength = bytes.size();

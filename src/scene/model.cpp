@@ -132,6 +132,15 @@ tinygltf::Model parse_model(std::vector<std::uint8_t> contents, const fs::path& 
   return model;
 }
 
+std::span<const unsigned char> bytes_of_view(const tinygltf::Model& model, std::size_t view,
+                                             const std::string& what) {
+  if (view >= model.bufferViews.size())
+    throw SceneError(what + ": there is no buffer view " + std::to_string(view));
+  const tinygltf::BufferView& of = model.bufferViews[view];
+  return std::span(model.buffers[static_cast<std::size_t>(of.buffer)].data)
+      .subspan(of.byteOffset, of.byteLength);
+}
+
 std::string node_name(const tinygltf::Model& model, int node) {
   const std::string& name = model.nodes[static_cast<std::size_t>(node)].name;
   return name.empty() ? "node " + std::to_string(node) : name;

@@ -51,6 +51,11 @@ auto naming(const std::filesystem::path& file, const Read& read) {
   }
 }
 
+// The bytes of a buffer view, which was checked against its buffer when the file was read. Throws SceneError
+// where there is none of that number.
+std::span<const unsigned char> bytes_of_view(const tinygltf::Model& model, std::size_t view,
+                                             const std::string& what);
+
 // How messages call a node: "name", or node 7 where it has none.
 std::string node_name(const tinygltf::Model& model, int node);
 

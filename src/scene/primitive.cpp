@@ -8,14 +8,11 @@
 
 #include "accessor.hpp"
 #include "parts.hpp"
+#include "triangle.hpp"
 #include "vertices.hpp"
 
 namespace lichtveld::scene {
 namespace {
-
-// A triangle whose height is less than this share of its longest edge has no normal worth the name: a 32-bit
-// coordinate as long as the edge is rounded by as much.
-constexpr double flat_share = 1e-7;
 
 std::vector<Triangle> triangles_of(const tinygltf::Primitive& primitive, const std::optional<Accessor>& indices,
                                    std::size_t vertices, std::size_t max_triangles, const std::string& what) {
@@ -190,16 +187,14 @@ std::vector<std::uint32_t> add_primitive(const tinygltf::Model& model, const tin
   std::unordered_map<std::uint32_t, std::uint32_t> shared;  // element -> vertex, where the file has normals
   for (Triangle triangle : *triangles) {
     if (shape.transform(triangle[0]).mirrored) std::swap(triangle[1], triangle[2]);
-    std::array<glm::vec3, 3> p;
+    Corners p;
     std::array<glm::vec2, 3> uv;
     for (std::size_t k = 0; k < 3; ++k) {
       p[k] = world_position(shape, triangle[k], shape.transform(triangle[k]).world, what);
       uv[k] = atlas_coordinate(atlas, triangle[k], what, oddities);
     }
-    const glm::dvec3 a = glm::dvec3(p[1]) - glm::dvec3(p[0]), b = glm::dvec3(p[2]) - glm::dvec3(p[0]);
-    const glm::dvec3 cross = glm::cross(a, b);
-    const double longest = std::max({glm::dot(a, a), glm::dot(b, b), glm::dot(b - a, b - a)});
-    if (glm::length(cross) <= flat_share * longest) {
+    const glm::dvec3 cross = cross_of(p);
+    if (!has_area(p)) {
       ++oddities.zero_area;
       continue;
     }

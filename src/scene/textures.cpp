@@ -8,14 +8,6 @@
 namespace lichtveld::scene {
 namespace {
 
-// Where an image's encoded bytes lie. The buffer views were checked against their buffers before.
-std::span<const unsigned char> encoded(const tinygltf::Model& model, const tinygltf::Image& image) {
-  if (image.bufferView < 0) return image.image;
-  const auto& view = model.bufferViews[static_cast<std::size_t>(image.bufferView)];
-  const auto& buffer = model.buffers[static_cast<std::size_t>(view.buffer)].data;
-  return std::span(buffer).subspan(view.byteOffset, view.byteLength);
-}
-
 const tinygltf::Texture& texture_of(const tinygltf::Model& model, const tinygltf::TextureInfo& info,
                                     const std::string& what) {
   if (info.index < 0) throw SceneError(what + ": there is no texture with a negative index");
@@ -115,7 +107,7 @@ int TextureReader::read(const tinygltf::TextureInfo& info, const std::string& wh
   const tinygltf::Image& image = model_.images[static_cast<std::size_t>(source)];
   std::string name = what + ": image " + std::to_string(source);
   if (!image.uri.empty()) name += " (" + image.uri + ")";
-  const auto bytes = encoded(model_, image);
+  const auto bytes = encoded_bytes(model_, image);
   if (bytes.empty()) throw SceneError(name + " is missing: put it beside the scene, or export one .glb");
   textures_.push_back(decode_image(bytes, pixels_left_, name));
   pixels_left_ -= textures_.back().rgba.size() / 4;

@@ -218,6 +218,20 @@ TEST(SceneUnwrap, AFewSharedTexelsAreToldAndStay) {
   EXPECT_THAT(log.take(), HasSubstr("\"floor\" and \"wall\" share 13 of 128 x 128 texels"));
 }
 
+TEST(SceneUnwrap, CopiesThatShareAnAtlasStay) {
+  SceneBuilder builder;
+  const int grey = builder.material(glm::vec3(0.5f), glm::vec3(1));
+  // The second pair of triangles is the first, from other corners on.
+  builder.mesh("floor", {{-1, 0, 1}, {1, 0, 1}, {1, 0, -1}, {-1, 0, -1}}, {{0, 1}, {1, 1}, {1, 0}, {0, 0}},
+               {0, 1, 2, 0, 2, 3, 1, 2, 0, 3, 0, 2}, grey);
+  const Case of(builder);
+  LogCapture log;
+  const Scene scene = of.loaded();
+  EXPECT_THAT(scene.unwrapped, IsEmpty());
+  check_atlas(scene, size);
+  EXPECT_THAT(log.take(), IsEmpty());
+}
+
 TEST(SceneUnwrap, AHairOutsideIsPulledIn) {
   SceneBuilder builder;
   const int grey = builder.material(glm::vec3(0.5f), glm::vec3(1));
@@ -244,6 +258,23 @@ TEST(SceneUnwrap, WhatFoldsOrHasNoPlaceIsLaidAnew) {
     expect_good_atlas(scene);
     EXPECT_GT(valid_texels(scene, size).size(), 0.9 * size * size);
   }
+}
+
+// What folds leaves no mark where the next chart of its mesh is looked at.
+TEST(SceneUnwrap, OneChartThatFoldsCostsNoOther) {
+  SceneBuilder builder;
+  const int grey = builder.material(glm::vec3(0.5f), glm::vec3(1));
+  std::vector<glm::vec3> corners;
+  for (const float y : {0.0f, 1.0f})
+    for (const glm::vec2 at : {glm::vec2(-1, 1), glm::vec2(1, 1), glm::vec2(1, -1), glm::vec2(-1, -1)})
+      corners.emplace_back(at.x, y, at.y);
+  builder.mesh("two", corners, {{0, 1}, {1, 1}, {1, 0}, {1, 1}, {0, 1}, {1, 1}, {1, 0}, {0, 0}},
+               {0, 1, 2, 0, 2, 3, 4, 5, 6, 4, 6, 7}, grey);
+  const Case of(builder);
+  LogCapture log;
+  const Scene scene = of.loaded();
+  EXPECT_THAT(log.take(), HasSubstr("; 2 triangles of its charts fold"));
+  expect_good_atlas(scene);
 }
 
 TEST(SceneUnwrap, CopiesOfFacesShareTexels) {

@@ -1,12 +1,10 @@
 #include "charts.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <boost/geometry.hpp>
 #include <boost/geometry/geometries/multi_point.hpp>
 #include <boost/geometry/geometries/point_xy.hpp>
 #include <boost/geometry/geometries/polygon.hpp>
-#include <boost/pending/disjoint_sets.hpp>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -15,6 +13,7 @@
 #include <unordered_set>
 
 #include "flat_triangle.hpp"
+#include "welding.hpp"
 
 namespace lichtveld::scene {
 namespace {
@@ -26,101 +25,12 @@ constexpr double joining_cosine = 0.3;
 constexpr std::size_t small_chart = 64;
 // So many triangles around the first decide which way a chart faces.
 constexpr std::size_t deciding = 1000;
-// As in flat_share of primitive.cpp: less than that is a line.
-constexpr double flat_share = 1e-7;
 // Of a chart's own cells so many may lie on each other before it counts as folded.
 constexpr double folded_share = 0.01;
 // Of the edges around a chart so many are tried for its turn, the longest first.
 constexpr std::size_t tried_edges = 64;
 
 constexpr std::uint32_t none = ~0u;
-
-glm::dvec3 cross_of(const Corners& corners) {
-  const glm::dvec3 a(corners[0]), b(corners[1]), c(corners[2]);
-  return glm::cross(b - a, c - a);
-}
-
-bool has_area(const Corners& corners) {
-  const glm::dvec3 a(corners[0]), b(corners[1]), c(corners[2]);
-  const double longest = std::max({glm::dot(b - a, b - a), glm::dot(c - a, c - a), glm::dot(c - b, c - b)});
-  return glm::length(cross_of(corners)) > flat_share * longest;
-}
-
-std::size_t mixed(std::size_t seed, std::uint64_t value) {
-  return seed ^ (value * 0x9e3779b97f4a7c15u + (seed << 6) + (seed >> 2));
-}
-
-// Numbers for things that are equal bit by bit (0 and -0 are one).
-template <std::size_t size>
-class Numbers {
- public:
-  std::uint32_t of(std::array<float, size> key) {
-    for (float& value : key) value += 0.0f;
-    return known_.try_emplace(key, static_cast<std::uint32_t>(known_.size())).first->second;
-  }
-
- private:
-  struct Hash {
-    std::size_t operator()(const std::array<float, size>& key) const {
-      std::size_t seed = 0;
-      for (const float value : key) seed = mixed(seed, std::bit_cast<std::uint32_t>(value));
-      return seed;
-    }
-  };
-  std::unordered_map<std::array<float, size>, std::uint32_t, Hash> known_;
-};
-
-using Places = std::array<std::uint32_t, 3>;  // a triangle's corners by number, alike where they coincide
-
-std::vector<Places> welded(std::span<const Corners> triangles) {
-  Numbers<3> numbers;
-  std::vector<Places> places(triangles.size());
-  for (std::size_t t = 0; t < triangles.size(); ++t)
-    for (std::size_t k = 0; k < 3; ++k)
-      places[t][k] = numbers.of({triangles[t][k].x, triangles[t][k].y, triangles[t][k].z});
-  return places;
-}
-
-// The triangles along each edge, by its two ends in the order in which they run round the triangle.
-class Edges {
- public:
-  explicit Edges(std::span<const Places> places) {
-    all_.reserve(3 * places.size());
-    for (std::uint32_t t = 0; t < places.size(); ++t)
-      for (std::size_t k = 0; k < 3; ++k) all_.emplace_back(key(places[t][k], places[t][(k + 1) % 3]), t);
-    std::ranges::sort(all_);
-  }
-
-  template <typename Each>
-  void for_triangles(std::uint32_t from, std::uint32_t to, const Each& each) const {
-    const std::uint64_t wanted = key(from, to);
-    for (auto at = std::ranges::lower_bound(all_, std::pair{wanted, std::uint32_t{0}});
-         at != all_.end() && at->first == wanted; ++at)
-      each(at->second);
-  }
-
- private:
-  static std::uint64_t key(std::uint32_t from, std::uint32_t to) { return std::uint64_t{from} << 32 | to; }
-  std::vector<std::pair<std::uint64_t, std::uint32_t>> all_;
-};
-
-Twins find_twins(std::span<const Places> places) {
-  struct Hash {
-    std::size_t operator()(const Places& key) const { return mixed(mixed(mixed(0, key[0]), key[1]), key[2]); }
-  };
-  Twins twins{std::vector<std::uint32_t>(places.size()), std::vector<std::uint8_t>(places.size())};
-  std::unordered_map<Places, std::pair<std::uint32_t, std::uint8_t>, Hash> known;
-  for (std::uint32_t t = 0; t < places.size(); ++t) {
-    Places turned = places[t];
-    const auto least = std::ranges::min_element(turned) - turned.begin();
-    std::ranges::rotate(turned, turned.begin() + least);
-    const auto [found, is_new] = known.try_emplace(turned, t, static_cast<std::uint8_t>(least));
-    twins.first[t] = found->second.first;
-    // Corner k of it is corner k + turn of the first.
-    twins.turn[t] = static_cast<std::uint8_t>((found->second.second + 3 - least) % 3);
-  }
-  return twins;
-}
 
 // Two axes of the plane that a unit vector stands on.
 std::array<glm::dvec3, 2> plane_of(const glm::dvec3& normal) {
@@ -412,13 +322,66 @@ class Charter {
   std::vector<Plane> planes_;  // of each chart
 };
 
-using Sets = boost::disjoint_sets_with_storage<>;
+// Charts as they lie in coordinates of one's own.
+class OwnCharts {
+ public:
+  OwnCharts(std::span<const Corners> triangles, std::span<const std::array<glm::vec2, 3>> uv,
+            const ChartLimits& limits)
+      : triangles_(triangles), uv_(uv), limits_(limits), twins_(find_twins(welded(triangles))) {}
+
+  // As large as its surface. Nothing where it has no area, is too long, or folds onto itself.
+  std::optional<Chart> of(const std::vector<std::uint32_t>& island) {
+    const double scale = scale_of(island);
+    if (!(scale > 0)) return std::nullopt;
+    Extent extent;
+    for (const auto t : island)
+      for (const auto& at : uv_[t]) extent.add(glm::dvec2(at) * scale);
+    if (std::max(extent.size().x, extent.size().y) > limits_.longest) return std::nullopt;
+    Chart chart{.triangles = island, .flat = {}, .extent = {}};
+    const glm::dvec2 origin(uv_[island[0]][0]);
+    const std::uint32_t number = count_++;
+    std::size_t twice = 0, filled = 0;
+    for (const auto t : island) {
+      std::array<glm::dvec2, 3> flat, in_cells;
+      for (std::size_t k = 0; k < 3; ++k) {
+        flat[k] = (glm::dvec2(uv_[t][k]) - origin) * scale;
+        in_cells[k] = flat[k] / limits_.cell;
+      }
+      chart.flat.push_back(flat);
+      const auto triangle = twins_.first[t] == t ? FlatTriangle::of(in_cells) : std::nullopt;
+      if (!triangle) continue;
+      twice += cells_.held(*triangle, number);
+      filled += cells_.fill(*triangle, number);
+    }
+    if (static_cast<double>(twice) > folded_share * static_cast<double>(filled)) return std::nullopt;
+    settle(chart);
+    return chart;
+  }
+
+ private:
+  // From coordinates to metres; 0 where they have no area for more than a hair of the surface.
+  double scale_of(const std::vector<std::uint32_t>& island) const {
+    double area = 0, flat_area = 0, lost = 0;
+    for (const auto t : island) {
+      const glm::dvec2 a(uv_[t][0]), b(uv_[t][1]), c(uv_[t][2]);
+      const double flat = std::abs((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x)) / 2;
+      area += area_of(triangles_[t]);
+      flat_area += flat;
+      if (!(flat > 0)) lost += area_of(triangles_[t]);
+    }
+    const double scale = std::sqrt(area / flat_area);
+    return flat_area > 0 && std::isfinite(scale) && lost <= folded_share * area ? scale : 0;
+  }
+
+  std::span<const Corners> triangles_;
+  std::span<const std::array<glm::vec2, 3>> uv_;
+  ChartLimits limits_;
+  Twins twins_;
+  Cells cells_;
+  std::uint32_t count_ = 0;  // of charts that have been looked at
+};
 
 }  // namespace
-
-double area_of(const Corners& corners) {
-  return glm::length(cross_of(corners)) / 2;
-}
 
 std::vector<Chart> find_charts(std::span<const Corners> triangles, const ChartLimits& limits) {
   return Charter(triangles, limits).find();
@@ -443,7 +406,7 @@ std::vector<Chart> charts_of(std::span<const Corners> triangles, std::span<const
     if (finite[t])
       for (std::size_t k = 1; k < 3; ++k) sets.union_set(corners[t][0], corners[t][k]);
 
-  std::vector<Chart> charts;
+  std::vector<std::vector<std::uint32_t>> islands;
   std::vector<std::uint32_t> rest;
   std::unordered_map<std::size_t, std::uint32_t> known;
   for (std::uint32_t t = 0; t < triangles.size(); ++t) {
@@ -453,53 +416,17 @@ std::vector<Chart> charts_of(std::span<const Corners> triangles, std::span<const
       continue;
     }
     const auto [found, is_new] =
-        known.try_emplace(sets.find_set(corners[t][0]), static_cast<std::uint32_t>(charts.size()));
-    if (is_new) charts.emplace_back();
-    charts[found->second].triangles.push_back(t);
+        known.try_emplace(sets.find_set(corners[t][0]), static_cast<std::uint32_t>(islands.size()));
+    if (is_new) islands.emplace_back();
+    islands[found->second].push_back(t);
   }
-  const Twins twins = find_twins(welded(triangles));
-  Cells cells;
+  OwnCharts own(triangles, uv, limits);
   std::vector<Chart> kept;
-  for (auto& chart : charts) {
-    double area = 0, flat_area = 0, lost = 0;
-    for (const auto t : chart.triangles) {
-      const glm::dvec2 a(uv[t][0]), b(uv[t][1]), c(uv[t][2]);
-      const double flat = std::abs((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x)) / 2;
-      area += area_of(triangles[t]);
-      flat_area += flat;
-      if (!(flat > 0)) lost += area_of(triangles[t]);
-    }
-    const double scale = std::sqrt(area / flat_area);
-    std::size_t twice = 0, filled = 0;
-    const auto number = static_cast<std::uint32_t>(kept.size());
-    bool usable = flat_area > 0 && std::isfinite(scale) && lost <= folded_share * area;
-    if (usable) {
-      Extent extent;
-      for (const auto t : chart.triangles)
-        for (const auto& at : uv[t]) extent.add(glm::dvec2(at) * scale);
-      usable = std::max(extent.size().x, extent.size().y) <= limits.longest;
-    }
-    if (usable) {
-      const glm::dvec2 origin(uv[chart.triangles[0]][0]);
-      for (const auto t : chart.triangles) {
-        std::array<glm::dvec2, 3> flat, in_cells;
-        for (std::size_t k = 0; k < 3; ++k) {
-          flat[k] = (glm::dvec2(uv[t][k]) - origin) * scale;
-          in_cells[k] = flat[k] / limits.cell;
-        }
-        chart.flat.push_back(flat);
-        const auto triangle = twins.first[t] == t ? FlatTriangle::of(in_cells) : std::nullopt;
-        if (!triangle) continue;
-        twice += cells.held(*triangle, number);
-        filled += cells.fill(*triangle, number);
-      }
-      usable = static_cast<double>(twice) <= folded_share * static_cast<double>(filled);
-      settle(chart);
-    }
-    if (usable)
-      kept.push_back(std::move(chart));
+  for (const auto& island : islands) {
+    if (auto chart = own.of(island))
+      kept.push_back(std::move(*chart));
     else
-      rest.insert(rest.end(), chart.triangles.begin(), chart.triangles.end());
+      rest.insert(rest.end(), island.begin(), island.end());
   }
   anew += rest.size();
   std::ranges::sort(rest);
@@ -510,43 +437,6 @@ std::vector<Chart> charts_of(std::span<const Corners> triangles, std::span<const
     kept.push_back(std::move(chart));
   }
   return kept;
-}
-
-Bodies find_bodies(std::span<const Corners> triangles) {
-  const auto places = welded(triangles);
-  Sets sets(3 * triangles.size());
-  std::unordered_map<std::uint64_t, std::int64_t> balance;  // of an edge, by its ends
-  for (const auto& corners : places)
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::uint64_t a = corners[k], b = corners[(k + 1) % 3];
-      sets.union_set(corners[0], corners[k]);
-      balance[std::min(a, b) << 32 | std::max(a, b)] += a < b ? 1 : a > b ? -1 : 0;
-    }
-  Bodies bodies;
-  std::unordered_map<std::size_t, std::uint32_t> known;
-  std::vector<double> volume;
-  for (std::size_t t = 0; t < triangles.size(); ++t) {
-    const auto [found, is_new] =
-        known.try_emplace(sets.find_set(places[t][0]), static_cast<std::uint32_t>(volume.size()));
-    const auto body = found->second;
-    if (is_new) {
-      volume.push_back(0);
-      bodies.closed.push_back(true);
-      bodies.min.push_back(triangles[t][0]);
-      bodies.max.push_back(triangles[t][0]);
-    }
-    bodies.of.push_back(body);
-    volume[body] += glm::dot(glm::dvec3(triangles[t][0]), cross_of(triangles[t])) / 6;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::uint64_t a = places[t][k], b = places[t][(k + 1) % 3];
-      if (balance[std::min(a, b) << 32 | std::max(a, b)] != 0) bodies.closed[body] = false;
-      bodies.min[body] = glm::min(bodies.min[body], triangles[t][k]);
-      bodies.max[body] = glm::max(bodies.max[body], triangles[t][k]);
-    }
-  }
-  for (std::size_t body = 0; body < volume.size(); ++body)
-    if (!(volume[body] > 0)) bodies.closed[body] = false;
-  return bodies;
 }
 
 }  // namespace lichtveld::scene

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "accessor.hpp"
+#include "image.hpp"
 #include "lichtveld/scene/scene.hpp"
 
 namespace lichtveld::scene {
@@ -25,17 +26,6 @@ void append(PlainFile::Bytes& to, std::uint32_t value) {
 
 void pad(PlainFile::Bytes& bytes, unsigned char with) {
   while (bytes.size() % 4 != 0) bytes.push_back(with);
-}
-
-std::string mime_type_of(std::span<const unsigned char> bytes) {
-  const auto starts = [&](std::string_view magic) {
-    return bytes.size() >= magic.size() && std::memcmp(bytes.data(), magic.data(), magic.size()) == 0;
-  };
-  if (starts("\x89PNG")) return "image/png";
-  if (starts("\xff\xd8\xff")) return "image/jpeg";
-  if (starts("RIFF")) return "image/webp";
-  if (starts("\xabKTX")) return "image/ktx2";
-  return "";
 }
 
 // The least and the most of each component of a VEC3 of float, which POSITION has to state.
@@ -221,18 +211,12 @@ void PlainFile::carry_images() {
   if (!root_.contains("images")) return;
   for (std::size_t i = 0; i < root_["images"].size(); ++i) {
     json& image = root_["images"][i];
-    const auto& in = model_.images.at(i);
-    Bytes bytes = in.image;
-    if (image.contains("bufferView")) {
-      const auto& view = model_.bufferViews.at(image["bufferView"].get<std::size_t>());
-      const auto& data = model_.buffers.at(static_cast<std::size_t>(view.buffer)).data;
-      const auto begin = data.begin() + static_cast<std::ptrdiff_t>(view.byteOffset);
-      bytes.assign(begin, begin + static_cast<std::ptrdiff_t>(view.byteLength));
-    }
-    const std::string type = mime_type_of(bytes);
-    if (type.empty()) continue;  // missing, or nothing that can be said without its name
+    const auto encoded = encoded_bytes(model_, model_.images.at(i));
+    const char* format = format_of(encoded);
+    if (!format) continue;  // missing, or nothing that can be said without its name
+    const Bytes bytes(encoded.begin(), encoded.end());
     image.erase("uri");
-    image["mimeType"] = type;
+    image["mimeType"] = std::string("image/") + format;
     image["bufferView"] = add_view(bytes, 0, 0);
   }
 }

@@ -14,6 +14,7 @@
 #include "model.hpp"
 #include "skins.hpp"
 #include "vertices.hpp"
+#include "welding.hpp"
 
 namespace lichtveld::scene {
 namespace {
@@ -27,18 +28,13 @@ std::string in_quotes(const std::string& name) {
   return '"' + name + '"';
 }
 
-int attribute_of(const tinygltf::Primitive& primitive, const char* name) {
-  const auto found = primitive.attributes.find(name);
-  return found == primitive.attributes.end() ? -1 : found->second;
-}
-
 // The triangle's coordinates, or nothing where the primitive has none that can be read.
 std::vector<std::array<glm::vec2, 3>> own_atlas(const tinygltf::Model& model,
                                                 const tinygltf::Primitive& primitive, const Sheet& sheet,
                                                 std::size_t vertices) {
-  const int index = attribute_of(primitive, "TEXCOORD_1");
-  if (index < 0) return {};
-  const Accessor atlas(model, index, sheet.what + ", TEXCOORD_1");
+  const auto found = primitive.attributes.find("TEXCOORD_1");
+  if (found == primitive.attributes.end() || found->second < 0) return {};
+  const Accessor atlas(model, found->second, sheet.what + ", TEXCOORD_1");
   atlas.require_vectors(2);
   if (atlas.count() < vertices) return {};
   std::vector<std::array<glm::vec2, 3>> own;
@@ -253,7 +249,7 @@ std::string fault_of(const Meshes& meshes) {
             Owner& owner = owners[static_cast<std::size_t>(j * judged_at + i)];
             if (!owner.corners) {
               ++filled;
-            } else if (owner.use != &use || *owner.corners != sheet.corners[t]) {
+            } else if (owner.use != &use || !are_copies(*owner.corners, sheet.corners[t])) {
               ++shared;
               ++pairs[std::minmax(owner.use->name, use.name)];
             }
