@@ -57,9 +57,7 @@ struct PsfView {
 };
 
 struct GeometryConstants {
-  vec4 offset;       // xyz: the body's shift from rest [m]
-  vec4 base_colour;  // linear reflectance
-  vec4 emission;     // radiance Le [W m^-2 sr^-1]
+  vec4 offset;  // xyz: the body's shift from rest [m]
   uint first_triangle;
 };
 

@@ -5,17 +5,12 @@
 
 layout(location = 0) in vec3 world_position;
 layout(location = 1) in vec3 world_normal;
-layout(location = 2) in vec2 colour_coordinate;
-layout(location = 3) in vec3 colour_factor;
 
 layout(push_constant) uniform Push { GeometryConstants constants; };
-layout(binding = 0) uniform sampler2D base_colour;
 
 layout(location = 0) out vec4 out_position;     // xyz [m]; a: 1 on valid texels
 layout(location = 1) out vec4 out_normal;       // shading normal
 layout(location = 2) out vec4 out_face_normal;  // xyz: of the triangle itself, on the same side; a: its number
-layout(location = 3) out vec4 out_albedo;
-layout(location = 4) out vec4 out_emission;  // [W m^-2 sr^-1]
 
 void main() {
   const uint triangle = constants.first_triangle + uint(gl_PrimitiveID);
@@ -25,7 +20,4 @@ void main() {
   out_position = vec4(world_position, 1.0);
   out_normal = vec4(length_squared > 0.0 ? world_normal * inversesqrt(length_squared) : facing, 0.0);
   out_face_normal = vec4(facing, float(triangle));
-  const vec3 albedo = constants.base_colour.rgb * colour_factor * texture(base_colour, colour_coordinate).rgb;
-  out_albedo = vec4(clamp(albedo, 0.0, 1.0), 1.0);
-  out_emission = vec4(constants.emission.rgb, 1.0);
 }

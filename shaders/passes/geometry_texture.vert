@@ -6,20 +6,14 @@
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
 layout(location = 2) in vec2 atlas;
-layout(location = 3) in vec2 colour;
-layout(location = 5) in vec4 tint;
 
 layout(push_constant) uniform Push { GeometryConstants constants; };
 
 layout(location = 0) out vec3 world_position;
 layout(location = 1) out vec3 world_normal;
-layout(location = 2) out vec2 colour_coordinate;
-layout(location = 3) out vec3 colour_factor;
 
 void main() {
   world_position = position + constants.offset.xyz;
   world_normal = normal;
-  colour_coordinate = colour;
-  colour_factor = tint.rgb;
   gl_Position = vec4(atlas * 2.0 - 1.0, 0.0, 1.0);  // v = 0 is the top row
 }

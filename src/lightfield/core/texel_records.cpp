@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/texel_albedo.hpp"
 #include "lichtveld/scene/atlas.hpp"
 #include "shared.h"
 
@@ -86,6 +87,7 @@ std::vector<TexelRecord> records_of(const scene::Scene& scene, std::uint32_t siz
       if (Lamps::is_lamp(emission_of(texel), brightest) == lamps)
         records.push_back(record_at(scene, size, texel.at, surfaces[texel.at.triangle], texel.index));
     });
+  average_albedo(scene, size, records);
   return records;
 }
 

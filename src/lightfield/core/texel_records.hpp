@@ -20,7 +20,7 @@ struct TexelRecord {
   glm::vec3 position;      // [m]
   glm::vec3 normal;        // unit: the interpolated NORMAL, about which light is weighed
   glm::vec3 face;          // unit: the triangle's own, on the same side
-  glm::vec3 albedo;        // 0..1, linear
+  glm::vec3 albedo;        // 0..1, linear: of a texel its mean
   glm::vec3 emission;      // Le [W m^-2 sr^-1]
   float side;              // of a texel there, the longer one [m]
   std::uint32_t triangle;  // of Scene::indices

@@ -71,8 +71,7 @@ KeptLinks::KeptLinks(const gpu::Device& device, const scene::Scene& scene, const
 void KeptLinks::link(const scene::Offsets& to, const scene::Scales& scales, const Moves& moves,
                      Solution& solution) {
   if (moves.any()) link(to, moves, solution);
-  if (moves.dimmed || scales != scene::full(geometry_.scene))
-    put_emission(device_, map_, geometry_.scene, records_, scales);
+  if (moves.all || moves.dimmed) put_emission(device_, map_, geometry_.scene, records_, scales);
   direct_.light(to, scales, moves);
 }
 

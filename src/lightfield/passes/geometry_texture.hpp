@@ -1,7 +1,8 @@
 // geometry_texture: each triangle drawn at its place in the atlas, so that a texel knows its surface point.
-// Thesis, section 4.2. Reads the geometry; writes position, normals, albedo, emission, then what stands
-// near each texel. Costs the texels of what has moved, and a look at each other one. Which texels are valid and
-// what they are TexelRecords knows; this has it on the device, where the bodies are now.
+// Thesis, section 4.2. Reads the geometry; writes position and normals, then what stands near each texel.
+// Albedo and emission do not move, and come from TexelRecords. Costs the texels of what has moved, and a look
+// at each other one. Which texels are valid and what they are TexelRecords knows; this has it on the device,
+// where the bodies are now.
 #pragma once
 
 #include "passes/light_map.hpp"

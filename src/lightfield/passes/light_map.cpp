@@ -1,7 +1,5 @@
 #include "passes/light_map.hpp"
 
-#include <array>
-
 #include "lichtveld/scene/walls.hpp"
 #include "shared.h"
 
@@ -16,32 +14,6 @@ using Usage = vk::ImageUsageFlagBits;
 constexpr float wall_reach = 8;
 
 constexpr auto rgba32f = vk::Format::eR32G32B32A32Sfloat;
-
-std::vector<gpu::Image> upload_textures(const gpu::Device& device, const scene::Scene& scene) {
-  std::vector<gpu::Image> images;
-  for (const auto& texture : scene.textures)
-    images.push_back(gpu::upload_srgb(device, "scene/texture " + std::to_string(images.size()), texture.width,
-                                      texture.height, texture.rgba));
-  constexpr std::array<std::uint8_t, 4> white = {255, 255, 255, 255};
-  images.push_back(gpu::upload_srgb(device, "scene/white", 1, 1, white));
-  return images;
-}
-
-constexpr std::array wrap_modes = {vk::SamplerAddressMode::eRepeat, vk::SamplerAddressMode::eMirroredRepeat,
-                                   vk::SamplerAddressMode::eClampToEdge};  // by scene::Wrap
-
-std::vector<vk::raii::Sampler> make_samplers(const gpu::Device& device) {
-  std::vector<vk::raii::Sampler> samplers;
-  for (const auto u : wrap_modes)
-    for (const auto v : wrap_modes) {
-      samplers.emplace_back(device.handle(), vk::SamplerCreateInfo{.magFilter = vk::Filter::eLinear,
-                                                                   .minFilter = vk::Filter::eLinear,
-                                                                   .addressModeU = u,
-                                                                   .addressModeV = v});
-      device.name(samplers.back(), "scene/sampler " + vk::to_string(u) + " " + vk::to_string(v));
-    }
-  return samplers;
-}
 
 // The atlas texel that each texel sends the light of.
 std::vector<std::uint32_t> atlas_sources(const TexelRecords& records) {
@@ -70,8 +42,8 @@ LightMap::LightMap(const gpu::Device& device, const TexelRecords& records)
       normal(atlas_image(device, "normal", size, rgba32f, Usage::eColorAttachment)),
       face_normal(atlas_image(device, "face_normal", size, rgba32f, Usage::eColorAttachment)),
       near_walls(atlas_image(device, "near_walls", size, vk::Format::eR32G32B32A32Uint)),
-      albedo(atlas_image(device, "albedo", size, rgba32f, Usage::eColorAttachment)),
-      emission(atlas_image(device, "emission", size, rgba32f, Usage::eColorAttachment)),
+      albedo(atlas_image(device, "albedo", size, rgba32f)),
+      emission(atlas_image(device, "emission", size, rgba32f)),
       source(atlas_image(device, "source", size, vk::Format::eR32Uint)),
       shown(atlas_image(device, "shown", size, vk::Format::eR32Uint)),
       cover(atlas_image(device, "cover", size, vk::Format::eR32Sfloat)),
@@ -80,6 +52,9 @@ LightMap::LightMap(const gpu::Device& device, const TexelRecords& records)
       radiance(atlas_image(device, "radiance", size, rgba32f, Usage::eSampled)),
       presented(atlas_image(device, "presented", size, vk::Format::eR8G8B8A8Unorm)) {
   gpu::fill<std::uint32_t>(device, source, atlas_sources(records));
+  std::vector<glm::vec4> reflected(std::size_t{size} * size, glm::vec4(0));
+  for (const auto& record : records.all()) reflected[record.atlas] = glm::vec4(record.albedo, 1);
+  gpu::fill<glm::vec4>(device, albedo, reflected);
 }
 
 void put_emission(const gpu::Device& device, const LightMap& map, const scene::Scene& scene,
@@ -111,14 +86,7 @@ Geometry::Geometry(const gpu::Device& device, const scene::Scene& scene)
                   gpu::Memory::host),
       walls(device, "scene/walls", sizeof(glm::vec4), vk::BufferUsageFlagBits::eStorageBuffer,
             gpu::Memory::host, rgba32f),
-      textures(upload_textures(device, scene)),
-      device_(device),
-      samplers_(make_samplers(device)) {}
-
-const vk::raii::Sampler& Geometry::sampler(const scene::Material& material) const {
-  return samplers_[wrap_modes.size() * static_cast<std::size_t>(material.wrap[0]) +
-                   static_cast<std::size_t>(material.wrap[1])];
-}
+      device_(device) {}
 
 void Geometry::place(const scene::Offsets& to) {
   sphere = scene::bounding_sphere(scene, to);

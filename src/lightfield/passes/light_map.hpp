@@ -13,7 +13,7 @@ namespace lichtveld::lightfield {
 
 // All size * size, linear RGB, 32-bit float. Zero outside the charts where not said otherwise.
 struct LightMap {
-  // With `source` filled in, and nothing else.
+  // With `source` and `albedo` filled in, and nothing else.
   LightMap(const gpu::Device& device, const TexelRecords& records);
 
   std::uint32_t size;
@@ -45,7 +45,7 @@ void check_on(const gpu::Device& device, const Settings& settings);
 gpu::Image atlas_image(const gpu::Device& device, const char* name, std::uint32_t size, vk::Format format,
                        vk::ImageUsageFlags usage = {});
 
-// The scene's triangles and textures on the device, and where its bodies are.
+// The scene's triangles on the device, and where its bodies are.
 struct Geometry {
   Geometry(const gpu::Device& device, const scene::Scene& scene);
 
@@ -60,14 +60,9 @@ struct Geometry {
   gpu::Buffer offsets;  // vec4 a body, host-visible as the next two
   gpu::Buffer walls_first,
       walls;  // scene::Walls: of each triangle; two vec4 a line, the first's w: 1 if it rises
-  std::vector<gpu::Image> textures;  // of Scene::textures, and a white one at the end
-
-  // Of the material's texture, linear.
-  const vk::raii::Sampler& sampler(const scene::Material& material) const;
 
  private:
   const gpu::Device& device_;
-  std::vector<vk::raii::Sampler> samplers_;  // one for each pair of wraps, those of u together
 };
 
 }  // namespace lichtveld::lightfield

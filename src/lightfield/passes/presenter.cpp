@@ -14,14 +14,14 @@ Presenter::Presenter(const gpu::Device& device, const scene::Scene& scene, const
       geometry_texture_(device),
       brdf_(device),
       tone_map_(device) {
-  // Where bodies are changes nothing of what is shown here: albedo, emission, and which texels face the same
-  // way.
+  // Where bodies are changes nothing of what is shown here: which texels face the same way.
   Geometry geometry(device, scene);
   geometry.place(scene::Offsets(scene.bodies.size(), glm::vec3(0)));
   gpu::Frame frame(device);
   frame.clear("present", map_.cover, {});
   geometry_texture_.record(frame, geometry, map_, {});
   frame.submit_and_wait();
+  put_emission(device_, map_, scene_, records_, scales_);
 }
 
 void Presenter::dim(const scene::Scales& scales) {

@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "core/parallel.hpp"
+#include "core/texel_albedo.hpp"
 
 namespace lichtveld::lightfield {
 
@@ -92,12 +93,14 @@ Rows::Rows(const scene::Scene& scene, const TexelRecords& records, std::uint32_t
 }
 
 // A place in the middle of each chart that no texel stands for; triangles whose middles lie in the same texel
-// share it.
+// share it, and it reflects what they do together.
 void Rows::add_fallbacks(const scene::Scene& scene) {
+  const auto texels = static_cast<std::uint32_t>(rows_.size());
   at_.assign(std::size_t{size_} * size_, Cell{});
   for (std::uint32_t row = 0; row < rows_.size(); ++row)
     at_[rows_[row].atlas] = {row, face_key(rows_[row].surface, rows_[row].face)};
   std::map<std::tuple<std::uint32_t, std::uint32_t, int, int>, std::uint32_t> found;
+  std::vector<glm::vec4> reflected;  // of each of them: albedo times area, and area
   for (std::uint32_t index = 0; index < triangles_.size(); ++index) {
     Triangle& triangle = triangles_[index];
     const glm::vec2 middle(1.0f / 3);
@@ -105,16 +108,21 @@ void Rows::add_fallbacks(const scene::Scene& scene) {
     const glm::ivec2 cell(glm::floor(triangle.origin + (triangle.u + triangle.v) / 3.0f));
     const auto [place, is_new] =
         found.try_emplace({triangle.surface, facing(triangle.face), cell.x, cell.y}, rows_.size());
+    const auto corner = [&](std::size_t k) {
+      return scene.vertices[scene.indices[std::size_t{3} * index + k]].position;
+    };
+    const float area = glm::length(glm::cross(corner(1) - corner(0), corner(2) - corner(0)));
     if (is_new) {
       auto record = record_at(scene, size_, {index, middle}, triangle.surface, no_atlas_texel);
-      const auto corner = [&](std::size_t k) {
-        return scene.vertices[scene.indices[std::size_t{3} * index + k]].position;
-      };
-      record.side = std::sqrt(glm::length(glm::cross(corner(1) - corner(0), corner(2) - corner(0))));
+      record.side = std::sqrt(area);
       rows_.push_back(record);
+      reflected.emplace_back(0);
     }
     triangle.fallback = place->second;
+    reflected[place->second - texels] += area * glm::vec4(mean_albedo(scene, triangle.surface, index), 1);
   }
+  for (std::size_t i = 0; i < reflected.size(); ++i)
+    rows_[texels + i].albedo = glm::vec3(reflected[i]) / reflected[i].a;
 }
 
 void Rows::add_backs(const scene::Scene& scene) {

@@ -106,6 +106,7 @@ void Thesis::begin(const Moves& moves) {
   if (!layered_) layered_ = std::make_unique<Layered>(device_, settings_, capacity_for(settings_.layers));
   geometry_.place(offsets());
   geometry_.find_walls(offsets(), settings_.raster());
+  if (moves.all || moves.dimmed) put_emission(device_, map_, geometry_.scene, records_, scales());
   gpu::Frame frame(device_, {"thesis", "set up"});
   frame.clear("blend", map_.total_irradiance, {});
   if (moves.all) frame.clear("blend", sums_.lamp_irradiance, {});
@@ -114,8 +115,6 @@ void Thesis::begin(const Moves& moves) {
   geometry_texture_.find_walls(frame, geometry_, map_);
   brdf_.record(frame, map_, !lamps_);
   frame.submit_and_wait();
-  if (moves.dimmed || scales() != scene::full(geometry_.scene))
-    put_emission(device_, map_, geometry_.scene, records_, scales());
 }
 
 // The bounce of lamps, which no PSF brings: into sums_.lamp_irradiance.

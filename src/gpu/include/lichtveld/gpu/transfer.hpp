@@ -47,10 +47,6 @@ void fill(const Device& device, const Image& image, std::span<const T> pixels) {
   frame.submit_and_wait();
 }
 
-// A sampled 8-bit sRGB image with these pixels.
-Image upload_srgb(const Device& device, const std::string& name, std::uint32_t width, std::uint32_t height,
-                  std::span<const std::uint8_t> rgba);
-
 // The pixels of layer 0, row 0 first; T is as large as a pixel. The image needs eTransferSrc.
 template <typename T>
 std::vector<T> download(const Device& device, const Image& image) {
