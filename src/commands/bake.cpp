@@ -9,6 +9,7 @@
 #include "command_list.hpp"
 #include "gutters.hpp"
 #include "lichtveld/files/output.hpp"
+#include "lichtveld/lightfield/buried.hpp"
 #include "lichtveld/progress/progress.hpp"
 #include "lichtveld/scene/atlas.hpp"
 #include "lichtveld/scene/lights.hpp"
@@ -82,8 +83,17 @@ void bake(const BakeOptions& options) {
   for (const auto& text : options.moves) job.moves.push_back(parse_move(text, job.scene));
 
   Baked baked = options.method.is_reference() ? bake_reference(options, job) : bake_light_field(options, job);
-  fill_gutters(baked.irradiance, baked.size);
-  for (auto& light : baked.apart) fill_gutters(light.irradiance, baked.size);
+  std::optional<lightfield::BuriedTexels> buried;
+  if (options.settings.buried == lightfield::Buried::neighbours) {
+    buried.emplace(job.scene, baked.size);
+    baked.report["texels_buried"] = buried->count();
+  }
+  const auto finish = [&](std::vector<glm::vec4>& irradiance) {
+    if (buried) buried->take_light_of_neighbours(irradiance);
+    fill_gutters(irradiance, baked.size);
+  };
+  finish(baked.irradiance);
+  for (auto& light : baked.apart) finish(light.irradiance);
   files::write_exr(options.out, baked.irradiance, baked.size);
   for (const auto& [light, irradiance] : baked.apart)
     files::write_exr(std::filesystem::path(options.lights_apart) / light, irradiance, baked.size);
@@ -121,6 +131,7 @@ void add_bake(CLI::App& application) {
       ->allow_extra_args(false);
   add_light_options(*command, options->lights);
   add_keep_uv_option(*command, options->keep_uv);
+  add_buried_option(*command, options->settings);
   command
       ->add_option("--lights-apart", options->lights_apart,
                    "Write what each light that switches gives, and all others together, there, as NAME.exr: a "

@@ -60,6 +60,12 @@ const std::vector<OptionOfMethods> options_of_methods = {
 
 }  // namespace
 
+void add_buried_option(CLI::App& command, lightfield::Settings& settings) {
+  add_choice(command, "--buried", settings.buried, lightfield::words_of_burieds(),
+             "Texels inside of what stands there, as of a floor in a wall that goes through it: the light of "
+             "their visible neighbours, or lit as if it were not there");
+}
+
 void add_keep_uv_option(CLI::App& command, bool& keep_uv) {
   command.add_flag("--keep-uv", keep_uv,
                    "Refuse a scene whose TEXCOORD_1 is missing or cannot be used, instead of unwrapping it");

@@ -318,6 +318,7 @@ void add_serve(CLI::App& application) {
   command->add_option("--rate", options->rate, "Most light maps a second")->capture_default_str();
   add_light_options(*command, options->lights);
   add_keep_uv_option(*command, options->keep_uv);
+  add_buried_option(*command, options->settings);
   add_eye_options(*command, options->eye);
   add_quality_options(*command, options->settings);
   command->get_option("--size")->default_str(

@@ -191,6 +191,11 @@ RayIndex::~RayIndex() = default;
 
 void RayIndex::nearest(std::uint32_t body, const glm::vec3& offset, const RayPacket& rays,
                        HitPacket& hits) const {
+  nearest(body, offset, rays, hits, false);
+}
+
+void RayIndex::nearest(std::uint32_t body, const glm::vec3& offset, const RayPacket& rays, HitPacket& hits,
+                       bool backs) const {
   alignas(64) int active[RayPacket::size];
   RTCRayHit16 query;
   fill(query.ray, rays, centre_ + offset, active);
@@ -199,6 +204,7 @@ void RayIndex::nearest(std::uint32_t body, const glm::vec3& offset, const RayPac
     query.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
   }
   Query context;
+  context.backs = backs;
   intersect(trees_->of_body(body), context, active, query);
   for (std::uint32_t i = 0; i < RayPacket::size; ++i) {
     if (active[i] == 0 || query.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) continue;
@@ -210,6 +216,22 @@ void RayIndex::nearest(std::uint32_t body, const glm::vec3& offset, const RayPac
         query.hit.Ng_x[i] * rays.dx[i] + query.hit.Ng_y[i] * rays.dy[i] + query.hit.Ng_z[i] * rays.dz[i] > 0;
     hits.from_behind = (hits.from_behind & ~(1u << i)) | (behind ? 1u << i : 0u);
   }
+}
+
+RayIndex::Sides RayIndex::sides_met(std::uint32_t body, const glm::vec3& offset, const RayPacket& rays) const {
+  HitPacket first;
+  first.clear(std::numeric_limits<float>::infinity());
+  nearest(body, offset, rays, first, true);
+  HitPacket front = first;  // what is no farther than that
+  front.triangle.fill(HitPacket::none);
+  for (float& distance : front.distance) distance += 2 * skin_;
+  nearest(body, offset, rays, front, false);
+  Sides sides;
+  for (std::uint32_t i = 0; i < RayPacket::size; ++i) {
+    if (!(rays.lanes >> i & 1) || first.triangle[i] == HitPacket::none) continue;
+    (front.triangle[i] == HitPacket::none ? sides.backs : sides.fronts) |= 1u << i;
+  }
+  return sides;
 }
 
 std::uint32_t RayIndex::occluded(std::uint32_t body, const glm::vec3& offset, const RayPacket& rays,

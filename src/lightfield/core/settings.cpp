@@ -42,6 +42,11 @@ const std::map<std::string, Direct>& words_of_directs() {
   return words;
 }
 
+const std::map<std::string, Buried>& words_of_burieds() {
+  static const std::map<std::string, Buried> words = {{"neighbours", Buried::neighbours}, {"lit", Buried::lit}};
+  return words;
+}
+
 std::string name_of(ABuffer abuffer) {
   return word_of(words_of_abuffers(), abuffer);
 }

@@ -17,7 +17,7 @@ constexpr float buried_distance = 0.25f;
 }  // namespace
 
 RayLinks::RayLinks(const scene::RayIndex& index, const scene::Scene& scene, const Rows& rows,
-                   const RaySets& sets)
+                   const RaySets& sets, std::vector<char> hidden)
     : rows_(rows),
       search_(index, scene, rows, sets),
       own_(std::size_t{rows.count()} * sets.rays(), boost::container::default_init),
@@ -27,6 +27,7 @@ RayLinks::RayLinks(const scene::RayIndex& index, const scene::Scene& scene, cons
       covers_(rows.bodies(), std::vector<Covers>(rows.bodies())),
       reset_(own_.size()),
       valid_(rows.count()),
+      hidden_(std::move(hidden)),
       buried_(rows.count()),
       misses_(rows.count()) {}
 
@@ -53,7 +54,7 @@ void RayLinks::link(const scene::Offsets& offsets, const Moves& moves) {
   for_each_index(0, rows_.count(), 256, [&](std::uint32_t row) {
     if (!touched_[row]) return;
     const auto near = [&](float distance) { return distance <= buried_distance * rows_[row].side; };
-    buried_[row] = 2 * std::ranges::count_if(distances(row), near) > std::ssize(distances(row));
+    buried_[row] = hidden_[row] || 2 * std::ranges::count_if(distances(row), near) > std::ssize(distances(row));
     misses_[row] = covered(row) ? 0 : static_cast<std::uint32_t>(std::ranges::count(of(row), nothing()));
   });
   changed_.clear();

@@ -19,8 +19,9 @@ class RayLinks {
  public:
   static constexpr std::uint64_t bytes_a_ray = 16;  // two rows, two distances
 
-  // All of these must outlive it.
-  RayLinks(const scene::RayIndex& index, const scene::Scene& scene, const Rows& rows, const RaySets& sets);
+  // All of these must outlive it. `hidden`: 1 for rows that are buried wherever bodies are.
+  RayLinks(const scene::RayIndex& index, const scene::Scene& scene, const Rows& rows, const RaySets& sets,
+           std::vector<char> hidden);
 
   // Bodies are where `offsets` say; `moves`: since the last time.
   void link(const scene::Offsets& offsets, const Moves& moves);
@@ -44,7 +45,8 @@ class RayLinks {
 
   // The rows of which a link has changed with the last move, ascending.
   const std::vector<std::uint32_t>& changed() const { return changed_; }
-  // Whether something lies on the row, by the middle of its texel: whoever sees it sees a part beside that.
+  // Whether something lies on the row or around it, by the middle of its texel: whoever sees it sees a part
+  // beside that.
   bool buried(std::uint32_t row) const { return buried_[row] != 0; }
 
  private:
@@ -67,7 +69,7 @@ class RayLinks {
   std::vector<bool> reset_;
   std::vector<std::size_t> uncovered_;
   std::vector<std::array<std::uint32_t, 2>> valid_;
-  std::vector<char> buried_;
+  std::vector<char> hidden_, buried_;
   std::vector<std::uint32_t> misses_;
   std::vector<char> touched_;  // rows of which a link has changed
   std::vector<std::uint32_t> changed_;

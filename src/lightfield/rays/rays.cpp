@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/buried.hpp"
 #include "core/convergence.hpp"
 #include "core/memory.hpp"
 #include "core/parallel.hpp"
@@ -48,13 +49,18 @@ Rays::Rays(const gpu::Device& device, const scene::Scene& scene, const Settings&
       rows_(device.times().time("rows", [&] { return Rows(scene, records_, side_of(settings.rays.sets)); })),
       memory_(device.ledger(), "lightfield/rays", bytes()),
       sets_(settings.psf / 2, settings.rays.sets, settings.seed),
-      links_(*index_, scene, rows_, sets_),
+      links_(*index_, scene, rows_, sets_, device.times().time("buried", [&] { return hidden(); })),
       filter_(rows_, links_, side_of(settings.rays.sets)),
       sample_sets_(sample_sets(rows_, settings)),
       lamps_(*index_, scene, rows_.all(), settings.size, {sample_set_count(settings), sample_sets_}),
       gather_(rows_, links_, settings.direct.value_or(Direct::exact)),
       averages_(rows_.count()),
       irradiance_(std::size_t{settings.size} * settings.size, glm::vec4(0)) {}
+
+std::vector<char> Rays::hidden() const {
+  return settings_.buried == Buried::lit ? std::vector<char>(rows_.count())
+                                         : find_buried(*index_, scene_, rows_.all());
+}
 
 // Of what is kept a row. Throws std::runtime_error if it is too much.
 std::uint64_t Rays::bytes() const {

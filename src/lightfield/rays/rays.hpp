@@ -29,6 +29,7 @@ class Rays final : public LightField {
   bool compute(Light before, const Moves& moves, const Enough& enough, Solution& solution) override;
   double error_estimate() const override;
 
+  std::vector<char> hidden() const;
   std::uint64_t bytes() const;
   void link(const Moves& moves, Solution& solution);
   bool converge(Light before, const Enough& enough, Solution& solution);

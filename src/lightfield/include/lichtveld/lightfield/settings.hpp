@@ -15,12 +15,16 @@ enum class Weights { solid_angle, equal };
 // Light straight from lamps: in closed form, with shadows by sample points; or by the directions, as all other
 // light.
 enum class Direct { exact, psf };
+// Texels that nobody sees, inside of what stands there: they take the light of their visible neighbours, or are
+// lit as if nothing of it had backs.
+enum class Buried { neighbours, lit };
 
 // The words for them, on the command line and in tables.
 const std::map<std::string, ABuffer>& words_of_abuffers();
 const std::map<std::string, Sort>& words_of_sorts();
 const std::map<std::string, Weights>& words_of_weights();
 const std::map<std::string, Direct>& words_of_directs();
+const std::map<std::string, Buried>& words_of_burieds();
 std::string name_of(ABuffer abuffer);
 std::string name_of(Sort sort);
 std::string name_of(Weights weights);
@@ -72,6 +76,7 @@ struct Settings {
   RaysSettings rays = {};
   std::uint64_t memory = 0;           // bytes that links may take; 0: most of what is free
   std::optional<Direct> direct = {};  // empty: exact, but of `thesis` as published
+  Buried buried = Buried::neighbours;
 
   std::uint32_t raster() const { return psf_size > 0 ? psf_size : size; }  // of a PSF [pixels a side]
 };

@@ -57,6 +57,13 @@ class RayIndex {
   // A bit for each ray that meets the body within `reach` lengths of its direction.
   std::uint32_t occluded(std::uint32_t body, const glm::vec3& offset, const RayPacket& rays, float reach) const;
 
+  // Of rays of unit length a bit for each that first meets a front of that body, or a back. A double-sided
+  // triangle has two fronts, and so have two faces on each other that look both ways.
+  struct Sides {
+    std::uint32_t fronts = 0, backs = 0;
+  };
+  Sides sides_met(std::uint32_t body, const glm::vec3& offset, const RayPacket& rays) const;
+
   // Whether anything of a triangle's own body may lie above it, on the side that `face` (unit) looks to: if
   // not, no ray that leaves it there meets that body. Of boxes and what else is convex nothing does.
   bool may_meet_own_body(std::uint32_t triangle, const glm::vec3& face) const;
@@ -69,6 +76,10 @@ class RayIndex {
 
  private:
   struct Trees;
+  // The same; with `backs` of one-sided triangles, too.
+  void nearest(std::uint32_t body, const glm::vec3& offset, const RayPacket& rays, HitPacket& hits,
+               bool backs) const;
+
   const Scene& scene_;
   std::unique_ptr<Trees> trees_;
   glm::vec3 centre_;
