@@ -76,7 +76,7 @@ std::optional<Unwrapped> unwrap(const std::filesystem::path& file, const tinyglt
       }
   if (spots.empty()) return std::nullopt;  // load() says what is wrong
   const Atlas atlas = packed(spots, options);
-  MeshWriter writer(read_json(file), model);
+  MeshWriter writer(document_of(file), model);
   std::size_t spot = 0;
   for (const auto& [number, mesh] : meshes) writer.add(number, mesh, atlas, spot);
   result.glb = writer.finish();
@@ -95,7 +95,7 @@ Unwrapped unwrap(const std::filesystem::path& file, const UnwrapOptions& options
     if (auto made = unwrap(file, model, options))
       result = std::move(*made);
     else
-      result.glb = PlainFile(read_json(file), model).finish();
+      result.glb = PlainFile(document_of(file), model).finish();
     if (!model.scenes.empty())
       result.beside = sky_file_of(model.scenes[static_cast<std::size_t>(scene_of(model))].extras);
     return result;
