@@ -54,6 +54,13 @@ std::size_t lay_flat(Meshes& meshes, std::uint32_t size) {
   return anew;
 }
 
+bool has_triangles(const Meshes& meshes) {
+  return std::ranges::any_of(meshes, [](const auto& entry) {
+    return std::ranges::any_of(entry.second.sheets,
+                               [](const Sheet& sheet) { return std::ranges::any_of(sheet.corners, has_area); });
+  });
+}
+
 }  // namespace
 
 std::optional<Unwrapped> unwrap(const std::filesystem::path& file, const tinygltf::Model& model,
@@ -94,6 +101,8 @@ Unwrapped unwrap(const std::filesystem::path& file, const UnwrapOptions& options
     Unwrapped result;
     if (auto made = unwrap(file, model, options))
       result = std::move(*made);
+    else if (!has_triangles(used_meshes(model)))
+      throw SceneError(nothing_to_light);
     else
       result.glb = PlainFile(document_of(file), model).finish();
     if (!model.scenes.empty())
