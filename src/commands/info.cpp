@@ -1,8 +1,10 @@
 // lichtveld info: devices and their limits, and what a scene needs.
+#include <fmt/format.h>
+
 #include <cstdio>
 
+#include "check.hpp"
 #include "command_list.hpp"
-#include "lichtveld/scene/atlas.hpp"
 #include "options.hpp"
 
 namespace lichtveld::commands {
@@ -31,20 +33,23 @@ void print_devices() {
 }
 
 void print_scene(const std::string& file, std::uint32_t size) {
-  const auto scene = scene::load(file);
-  const auto texels = scene::check_atlas(scene, size);
-  const auto sphere = scene::bounding_sphere(scene);
-  std::printf("%s\n", file.c_str());
-  std::printf("   triangles            %zu in %zu surfaces, %zu materials, %zu textures\n",
-              scene.indices.size() / 3, scene.surfaces.size(), scene.materials.size(), scene.textures.size());
-  std::printf("   bounding sphere      radius %.3f m around (%.3f, %.3f, %.3f)\n", sphere.radius,
-              sphere.centre.x, sphere.centre.y, sphere.centre.z);
-  std::printf("   valid texels         %u of %u at --size %u\n", texels, size * size, size);
-  for (std::size_t body = 1; body < scene.bodies.size(); ++body) {
-    const auto& place = scene.bodies[body].place;
-    std::printf("   movable              %s at (%.3f, %.3f, %.3f) m\n", scene.bodies[body].node.c_str(),
-                place.x, place.y, place.z);
-  }
+  check(scene::UnwrapOptions{.size = size});
+  const auto facts = scene::check(file, {.sky = {}, .lights = {}, .unwrap = {.size = size}}).facts;
+  fmt::print("{}\n", scene::printable(file));
+  const auto print = [](const char* what, const std::string& text) {
+    fmt::print("   {:<20} {}\n", what, scene::printable(text));
+  };
+  print("triangles", fmt::format("{} in {} surfaces, {} materials, {} textures", facts.triangles,
+                                 facts.surfaces, facts.materials, facts.textures));
+  const auto& [centre, radius] = facts.sphere;
+  print("bounding sphere",
+        fmt::format("radius {:.3f} m around ({:.3f}, {:.3f}, {:.3f})", radius, centre.x, centre.y, centre.z));
+  print("valid texels",
+        fmt::format("{} of {} at --size {}", facts.atlas.texels, std::uint64_t{size} * size, size));
+  for (const auto& [node, place, box] : facts.movable)
+    print("movable", fmt::format("{} at ({:.3f}, {:.3f}, {:.3f}) m", node, place.x, place.y, place.z));
+  for (const auto& light : facts.lights) print("light", line_of(light));
+  print("more", "lichtveld check " + file);
 }
 
 }  // namespace

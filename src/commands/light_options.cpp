@@ -36,7 +36,7 @@ Dimmed parse(const std::string& text) {
 
 }  // namespace
 
-void add_light_options(CLI::App& command, LightOptions& options) {
+void add_light_source_options(CLI::App& command, LightOptions& options) {
   command
       .add_option(
           "--sky", options.sky,
@@ -45,23 +45,31 @@ void add_light_options(CLI::App& command, LightOptions& options) {
       ->type_name("FILE.hdr|FILE.exr|R,G,B")
       ->default_str("what the scene says");
   command
-      .add_option("--light", options.dimmed,
-                  "Scale what a node's surfaces or its light give, or the sky (sky); repeats, the last counts")
-      ->type_name("NAME=SCALE|R,G,B")
-      ->allow_extra_args(false);
-  command
       .add_option("--lumens-per-watt", options.lumens_per_watt,
                   "Divides the numbers of point, spot and directional lights, which are watts otherwise")
       ->capture_default_str();
 }
 
-scene::Scene load(const std::string& file, const LightOptions& options, const scene::UnwrapOptions& unwrap) {
+void add_light_options(CLI::App& command, LightOptions& options) {
+  add_light_source_options(command, options);
+  command
+      .add_option("--light", options.dimmed,
+                  "Scale what a node's surfaces or its light give, or the sky (sky); repeats, the last counts")
+      ->type_name("NAME=SCALE|R,G,B")
+      ->allow_extra_args(false);
+}
+
+scene::LoadOptions load_options(const LightOptions& options, const scene::UnwrapOptions& unwrap) {
   if (!(options.lumens_per_watt > 0 && std::isfinite(options.lumens_per_watt)))
     throw UsageError("--lumens-per-watt: a number above 0, as 683");
   scene::LoadOptions load{
       .sky = options.sky, .lights = {}, .lumens_per_watt = options.lumens_per_watt, .unwrap = unwrap};
   for (const auto& text : options.dimmed) load.lights.push_back(parse(text).name);
-  return scene::load(file, load);
+  return load;
+}
+
+scene::Scene load(const std::string& file, const LightOptions& options, const scene::UnwrapOptions& unwrap) {
+  return scene::load(file, load_options(options, unwrap));
 }
 
 scene::Scales scales_of(const scene::Scene& scene, const LightOptions& options) {

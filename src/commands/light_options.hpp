@@ -15,8 +15,14 @@ struct LightOptions {
   std::vector<std::string> dimmed;  // NAME=SCALE or NAME=R,G,B
 };
 
-// --sky, --lumens-per-watt and --light.
+// --sky and --lumens-per-watt.
+void add_light_source_options(CLI::App& command, LightOptions& options);
+
+// These and --light.
 void add_light_options(CLI::App& command, LightOptions& options);
+
+// Throws UsageError for what cannot be read.
+scene::LoadOptions load_options(const LightOptions& options, const scene::UnwrapOptions& unwrap);
 
 // Throws UsageError for what cannot be read, and as scene::load.
 scene::Scene load(const std::string& file, const LightOptions& options, const scene::UnwrapOptions& unwrap);

@@ -60,6 +60,7 @@ int run(int argc, char** argv) {
   add_serve(application);
   add_unwrap(application);
   add_bench(application);
+  add_check(application);
   add_info(application);
   const ProgressShown shown;
   return parse_and_run(application, argc, argv);

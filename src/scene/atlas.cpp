@@ -1,9 +1,11 @@
-// check_atlas(): every triangle's TEXCOORD_1 rasterised, to see which texels lie on two charts.
+// Every triangle's TEXCOORD_1 rasterised, to see which texels lie on two charts.
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <map>
+#include <span>
 #include <utility>
 
 #include "lichtveld/scene/atlas.hpp"
@@ -31,25 +33,9 @@ Corners corners_of(const Scene& scene, std::uint32_t triangle) {
   return corners;
 }
 
-using Overlaps = std::map<std::pair<std::string, std::string>, std::uint64_t>;
-
-std::string describe(const Overlaps& overlaps) {
-  std::vector<std::pair<std::uint64_t, std::string>> lines;
-  for (const auto& [nodes, texels] : overlaps) {
-    lines.emplace_back(texels,
-                       "\"" + nodes.first + "\" and \"" + nodes.second + "\" share " + std::to_string(texels));
-  }
-  std::ranges::sort(lines, std::greater{});
-  std::string text;
-  for (std::size_t i = 0; i < std::min<std::size_t>(lines.size(), 5); ++i)
-    text += (i ? ", " : "") + lines[i].second;
-  if (lines.size() > 5) text += " and " + std::to_string(lines.size() - 5) + " more pairs";
-  return text;
-}
-
 }  // namespace
 
-std::uint32_t check_atlas(const Scene& scene, std::uint32_t size) {
+SharedTexels shared_texels(const Scene& scene, std::uint32_t size) {
   if (size < 1 || size > max_size)
     throw SceneError("atlas size " + std::to_string(size) + " is outside 1..16384");
   // Neighbours in a chart meet at edges whose ends were rounded to 32 bits, up to 6e-8 of the atlas: a centre
@@ -60,32 +46,49 @@ std::uint32_t check_atlas(const Scene& scene, std::uint32_t size) {
     std::uint32_t triangle = none, surface = 0;
   };
   std::vector<Owner> owners(std::size_t{size} * size);
-  Overlaps overlaps;
-  std::uint64_t shared = 0;
+  std::map<std::pair<std::string, std::string>, std::uint64_t> pairs;
+  SharedTexels shared{.pairs = {}, .texels = 0, .at = std::vector<bool>(owners.size())};
   // Enough to describe the damage; a hostile file could stack millions of charts on each other.
   constexpr std::uint64_t enough = 1 << 20;
 
-  for (std::uint32_t s = 0; s < scene.surfaces.size() && shared < enough; ++s) {
+  for (std::uint32_t s = 0; s < scene.surfaces.size() && shared.texels < enough; ++s) {
     const Surface& surface = scene.surfaces[s];
-    for (std::uint32_t t = 0; t < surface.index_count && shared < enough; t += 3) {
+    for (std::uint32_t t = 0; t < surface.index_count && shared.texels < enough; t += 3) {
       const std::uint32_t number = (surface.first_index + t) / 3;
       const auto triangle = FlatTriangle::of(chart_of(scene, number, size));
       if (!triangle) continue;
       triangle->for_cells(margin, size, [&](std::int64_t i, std::int64_t j) {
-        Owner& owner = owners[static_cast<std::size_t>(j * size + i)];
+        const auto texel = static_cast<std::size_t>(j * size + i);
+        Owner& owner = owners[texel];
         if (owner.triangle != none &&
             !are_copies(corners_of(scene, owner.triangle), corners_of(scene, number))) {
-          const auto& [a, b] = std::minmax(scene.surfaces[owner.surface].node, surface.node);
-          ++overlaps[{a, b}];
-          ++shared;
+          ++pairs[std::minmax(scene.surfaces[owner.surface].node, surface.node)];
+          ++shared.texels;
+          shared.at[texel] = true;
         }
         owner = {number, s};
       });
     }
   }
-  if (shared > 0)
+  for (const auto& [nodes, texels] : pairs) shared.pairs.push_back({nodes.first, nodes.second, texels});
+  std::ranges::stable_sort(shared.pairs, std::greater{}, &SharedTexels::Pair::texels);
+  return shared;
+}
+
+std::string text_of(const SharedTexels& shared) {
+  constexpr std::size_t most_told = 5;
+  std::string text;
+  for (const auto& [a, b, texels] : std::span(shared.pairs).first(std::min(shared.pairs.size(), most_told)))
+    text += fmt::format("{}\"{}\" and \"{}\" share {}", text.empty() ? "" : ", ", a, b, texels);
+  if (shared.pairs.size() > most_told)
+    text += fmt::format(" and {} more pairs", shared.pairs.size() - most_told);
+  return text;
+}
+
+std::uint32_t check_atlas(const Scene& scene, std::uint32_t size) {
+  if (const auto shared = shared_texels(scene, size); shared.texels > 0)
     spdlog::warn("{}: charts overlap in TEXCOORD_1: {} of {} x {} texels; each shows what lies on it last",
-                 scene.file, describe(overlaps), size, size);
+                 scene.file, text_of(shared), size, size);
   const auto valid = static_cast<std::uint32_t>(valid_texels(scene, size).size());
   if (valid == 0) {
     throw SceneError(scene.file + ": no texel of " + std::to_string(size) + " x " + std::to_string(size) +

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "compression.hpp"
+#include "document.hpp"
 #include "extensions.hpp"
 #include "lichtveld/scene/scene.hpp"
 #include "model.hpp"
@@ -14,8 +15,6 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int max_nesting = 64;  // JSON levels; tinygltf recurses into extras, exporters need < 20
-constexpr std::size_t max_json_bytes = 64u << 20;   // a parsed document takes several times its text
 constexpr std::size_t max_buffer_bytes = 1u << 30;  // over all buffers
 
 std::uint32_t little_endian(std::span<const std::uint8_t> bytes, std::size_t at) {
@@ -45,21 +44,6 @@ std::span<const std::uint8_t> json_chunk(std::span<const std::uint8_t> bytes) {
 
 bool is_binary(std::span<const std::uint8_t> bytes) {
   return bytes.size() >= 4 && std::memcmp(bytes.data(), "glTF", 4) == 0;
-}
-
-json parse(std::span<const std::uint8_t> text) {
-  if (text.size() > max_json_bytes) throw SceneError("its JSON is larger than 64 MiB");
-  const auto limit_nesting = [](int depth, json::parse_event_t, json&) {
-    if (depth > max_nesting) throw SceneError("its JSON nests deeper than 64 levels");
-    return true;
-  };
-  try {
-    json root = json::parse(text.begin(), text.end(), limit_nesting);
-    if (!root.is_object()) throw SceneError("its JSON is no object: not a glTF file");
-    return root;
-  } catch (const json::exception& e) {
-    throw SceneError(std::string("not a glTF file (neither a .glb nor JSON): ") + e.what());
-  }
 }
 
 // The array of objects of that name, or an empty one.
@@ -177,19 +161,20 @@ std::vector<std::uint8_t> with_json(std::span<const std::uint8_t> bytes, bool bi
 
 }  // namespace
 
-json parse_json(std::span<const std::uint8_t> bytes) {
-  return parse(is_binary(bytes) ? json_chunk(bytes) : bytes);
+std::span<const std::uint8_t> json_of(std::span<const std::uint8_t> bytes) {
+  return is_binary(bytes) ? json_chunk(bytes) : bytes;
 }
 
 std::vector<std::uint8_t> checked(std::vector<std::uint8_t> bytes, Remarks& remarks) {
   const bool binary = is_binary(bytes);
-  json root = parse_json(bytes);
+  bool left_out = false;
+  json root = read_document(json_of(bytes), left_out);
   for (const char* key : {"accessors", "bufferViews", "buffers", "images", "materials", "meshes", "nodes",
                           "scenes", "skins", "textures"})
     list(root, key);
   check_extensions(root, remarks);
   const bool pointed = point_at_compressed(root);
-  const bool changed = suit_tinygltf(root) || pointed;
+  const bool changed = suit_tinygltf(root) || pointed || left_out;
 
   const json& buffers = list(root, "buffers");
   std::uint64_t total = 0;

@@ -127,7 +127,8 @@ void check_extensions(const json& root, Remarks& remarks) {
   check_geometry(root, unknown);
   std::string names;
   for (const std::string& name : unknown) names += (names.empty() ? "" : ", ") + name;
-  remarks.add("requires " + names + ", unknown here: what they add is left out");
+  remarks.add("requires " + names + ", unknown here: what they add is left out", {},
+              "export it without these extensions if something is missing");
 }
 
 }  // namespace lichtveld::scene

@@ -39,6 +39,15 @@ Scene dimmed(Scene scene, const Scales& scales) {
   return scene;
 }
 
+glm::vec3 flux_of(const PunctualLight& light) {
+  if (light.kind == PunctualLight::Kind::directional) return glm::vec3(0);
+  // A spot gives as much as one without a fade whose cone lies between its two.
+  const float solid_angle =
+      2 * std::numbers::pi_v<float> *
+      (light.kind == PunctualLight::Kind::spot ? 1 - (light.inner_cosine + light.outer_cosine) / 2 : 2.0f);
+  return light.intensity * solid_angle;
+}
+
 glm::vec3 radiance_of(const Sky& sky, const glm::vec3& direction) {
   constexpr float pi = std::numbers::pi_v<float>;
   const auto at = [](float share, std::uint32_t count) {

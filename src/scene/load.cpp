@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <limits>
-#include <numbers>
 
 #include "lichtveld/scene/lights.hpp"
+#include "load_report.hpp"
 #include "model.hpp"
 #include "parts.hpp"
 #include "skins.hpp"
@@ -48,8 +48,8 @@ void measure_bodies(Scene& scene) {
   }
 }
 
-// Where lights are that surfaces or punctual lights make up. Those of nothing that shines are told.
-void measure_lights(Scene& scene) {
+// Where lights are that surfaces or punctual lights make up. Those of nothing that shines are remarked on.
+void measure_lights(Scene& scene, Remarks& remarks) {
   std::vector<glm::vec3> low(scene.lights.size(), glm::vec3(std::numeric_limits<float>::infinity())),
       high(scene.lights.size(), -low.front());
   const auto add = [&](std::uint32_t light, const glm::vec3& place) {
@@ -66,8 +66,9 @@ void measure_lights(Scene& scene) {
     if (low[light].x <= high[light].x)
       scene.lights[light].place = (low[light] + high[light]) / 2.0f;
     else if (!scene.sky || scene.sky->light != light)
-      spdlog::warn("{}: node \"{}\" is to be a light, and nothing of it shines", scene.file,
-                   scene.lights[light].node);
+      remarks.add(
+          "is to be a light, and nothing of it shines", "node \"" + scene.lights[light].node + '"',
+          "give its surfaces an emissiveFactor, or take switchable, flicker and schedule off its extras");
   }
 }
 
@@ -155,29 +156,27 @@ std::vector<Piece> read_pieces(const tinygltf::Model& model, const LoadOptions& 
   return pieces;
 }
 
-void warn_of(const Scene& scene, const Oddities& oddities) {
-  if (oddities.zero_area) {
-    spdlog::warn("{}: {} triangles without area were dropped", scene.file, oddities.zero_area);
-  }
-  if (oddities.zero_chart) {
-    spdlog::warn("{}: {} triangles have no area in TEXCOORD_1 and get no texels of their own", scene.file,
-                 oddities.zero_chart);
-  }
-  if (oddities.outside_atlas) {
-    spdlog::warn("{}: {} coordinates of TEXCOORD_1 lie a hair outside 0..1 and were pulled in", scene.file,
-                 oddities.outside_atlas);
-  }
-  if (oddities.no_triangles) {
-    spdlog::warn("{}: {} primitives of points or lines were left out", scene.file, oddities.no_triangles);
-  }
-  if (oddities.bad_normals) {
-    spdlog::warn("{}: {} primitives have unusable normals; their faces' own are used", scene.file,
-                 oddities.bad_normals);
-  }
-  oddities.remarks.tell(scene.file);
+// What was counted, before what was remarked on meanwhile.
+Remarks remarks_on(const Scene& scene, const Oddities& oddities) {
+  Remarks remarks;
+  const auto counted = [&](std::size_t count, const char* what, const char* advice) {
+    if (count > 0) remarks.add(fmt::format("{} {}", count, what), {}, advice, count);
+  };
+  counted(oddities.zero_area, "triangles without area were dropped",
+          "merge vertices that coincide, and dissolve degenerate faces");
+  counted(oddities.zero_chart, "triangles have no area in TEXCOORD_1 and get no texels of their own",
+          "give them an area there, or leave TEXCOORD_1 out");
+  counted(oddities.outside_atlas, "coordinates of TEXCOORD_1 lie a hair outside 0..1 and were pulled in",
+          "nothing, or scale the charts into 0..1");
+  counted(oddities.no_triangles, "primitives of points or lines were left out",
+          "nothing, or make tubes of lines that should be lit");
+  counted(oddities.bad_normals, "primitives have unusable normals; their faces' own are used",
+          "compute their normals anew, or export without");
+  remarks.append(oddities.remarks);
   if (!has_light(scene))
-    spdlog::warn("{}: nothing emits light; give a material an emissiveFactor, add a light, or try --sky 1,1,1",
-                 scene.file);
+    remarks.add("nothing emits light; give a material an emissiveFactor, add a light, or try --sky 1,1,1", {},
+                "give a material an emissiveFactor, add a light, or try --sky 1,1,1");
+  return remarks;
 }
 
 // The sky that is asked for, or else the file's, with its suns behind the other lights.
@@ -213,35 +212,47 @@ void tell_of_lights(const Scene& scene) {
       spdlog::info("{}: directional light \"{}\", {:.4g} W/m2 on what faces it", scene.file, light.node, most);
       continue;
     }
-    const bool spot = light.kind == Kind::spot;
-    // Of a spot as much as of a cone between its two.
-    const float solid_angle =
-        2 * std::numbers::pi_v<float> * (spot ? 1 - (light.inner_cosine + light.outer_cosine) / 2 : 2.0f);
-    spdlog::info("{}: {} light \"{}\", {:.4g} W/sr, {:.4g} W", scene.file, spot ? "spot" : "point", light.node,
-                 most, most * solid_angle);
+    const glm::vec3 flux = flux_of(light);
+    spdlog::info("{}: {} light \"{}\", {:.4g} W/sr, {:.4g} W", scene.file,
+                 light.kind == Kind::spot ? "spot" : "point", light.node, most,
+                 std::max({flux.r, flux.g, flux.b}));
   }
   if (scene.punctual.size() > most_told)
     spdlog::info("{}: and {} more lights", scene.file, scene.punctual.size() - most_told);
 }
 
-Scene read_scene(const std::filesystem::path& file, const LoadOptions& options, Oddities& oddities) {
+// The triangles before textures cut them.
+void keep_whole(const std::vector<Piece>& pieces, WholeTriangles& whole) {
+  for (const auto& piece : pieces) {
+    auto surface = piece.surface;
+    surface.first_index = static_cast<std::uint32_t>(whole.indices.size());
+    surface.index_count = static_cast<std::uint32_t>(piece.indices.size());
+    whole.surfaces.push_back(std::move(surface));
+    whole.indices.insert(whole.indices.end(), piece.indices.begin(), piece.indices.end());
+  }
+}
+
+Scene read_scene(const std::filesystem::path& file, const LoadOptions& options, Oddities& oddities,
+                 LoadReport& report) {
   Scene scene;
   scene.file = file.string();
   tinygltf::Model model = read_model(file, oddities.remarks);
+  if (report.details) report.details->meshes = mesh_facts(model);
   if (auto unwrapped = unwrap(file, model, options.unwrap)) {
     if (options.unwrap.keep_uv)
       throw SceneError(unwrapped->reason + ": leave out --keep-uv, or give it charts that do not overlap");
-    spdlog::info("{}: {}", scene.file, printable(summary_of(*unwrapped)));
     scene.unwrapped = std::move(unwrapped->glb);
+    report.unwrapped = std::move(unwrapped);
     Remarks told;  // once is enough
     model = parse_model(scene.unwrapped, file, told);
   }
   Materials materials = read_materials(model);
-  std::vector<Piece> pieces =
-      cut_uneven(read_pieces(model, options, materials, scene, oddities), materials, scene);
+  std::vector<Piece> pieces = read_pieces(model, options, materials, scene, oddities);
+  if (report.details) keep_whole(pieces, report.details->whole);
+  pieces = cut_uneven(std::move(pieces), materials, scene);
   scene.materials = std::move(materials.materials);
   scene.textures = std::move(materials.textures);
-  if (pieces.empty()) throw SceneError("has no triangles with an area: nothing to light");
+  if (pieces.empty()) throw SceneError(nothing_to_light);
 
   const auto one_sided = [&](const Piece& piece) {
     return !scene.materials[piece.surface.material].double_sided;
@@ -257,22 +268,30 @@ Scene read_scene(const std::filesystem::path& file, const LoadOptions& options, 
   if (double_sided == pieces.end()) scene.one_sided_indices = static_cast<std::uint32_t>(scene.indices.size());
   measure_bodies(scene);
   add_sky(model, options, file.parent_path(), scene);
-  measure_lights(scene);
-  warn_of(scene, oddities);
-  tell_of_lights(scene);
+  measure_lights(scene, oddities.remarks);
+  report.remarks = remarks_on(scene, oddities);
   return scene;
 }
 
 }  // namespace
 
-Scene load(const std::filesystem::path& file, const LoadOptions& options) {
+Scene load(const std::filesystem::path& file, const LoadOptions& options, LoadReport& report) {
   Oddities oddities;
   try {
-    return naming(file, [&] { return read_scene(file, options, oddities); });
+    return naming(file, [&] { return read_scene(file, options, oddities, report); });
   } catch (const SceneError&) {
     oddities.remarks.tell(file.string());  // they may be the reason
     throw;
   }
+}
+
+Scene load(const std::filesystem::path& file, const LoadOptions& options) {
+  LoadReport report;
+  Scene scene = load(file, options, report);
+  if (report.unwrapped) spdlog::info("{}: {}", scene.file, printable(summary_of(*report.unwrapped)));
+  report.remarks.tell(scene.file);
+  tell_of_lights(scene);
+  return scene;
 }
 
 }  // namespace lichtveld::scene

@@ -100,8 +100,9 @@ tinygltf::Model read_model(const fs::path& file, Remarks& remarks) {
   return parse_model(read_file(file, max_file_bytes), file, remarks);
 }
 
-nlohmann::json read_json(const fs::path& file) {
-  return parse_json(read_file(file, max_file_bytes));
+Document document_of(const fs::path& file) {
+  const auto bytes = read_file(file, max_file_bytes);
+  return Document(json_of(bytes));
 }
 
 tinygltf::Model parse_model(std::vector<std::uint8_t> contents, const fs::path& file, Remarks& remarks) {

@@ -6,11 +6,11 @@
 #include <cstdint>
 #include <filesystem>
 #include <new>
-#include <nlohmann/json_fwd.hpp>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "document.hpp"
 #include "lichtveld/scene/scene.hpp"
 #include "remarks.hpp"
 
@@ -34,9 +34,11 @@ tinygltf::Model read_model(const std::filesystem::path& file, Remarks& remarks);
 tinygltf::Model parse_model(std::vector<std::uint8_t> bytes, const std::filesystem::path& file,
                             Remarks& remarks);
 
-// The JSON of a file that was read, or of its bytes.
-nlohmann::json read_json(const std::filesystem::path& file);
-nlohmann::json parse_json(std::span<const std::uint8_t> bytes);
+// The JSON's text in a file's bytes. Throws SceneError for a damaged .glb.
+std::span<const std::uint8_t> json_of(std::span<const std::uint8_t> bytes);
+
+// The JSON of a file, to be written anew.
+Document document_of(const std::filesystem::path& file);
 
 // What read() gives; what it throws, our own errors and what tinygltf lets escape from its parser, as
 // SceneError with the file's name.

@@ -62,6 +62,9 @@ std::vector<PunctualLight> read_lights(const tinygltf::Model& model, const std::
 // 64 triangles a texel of a 256 x 256 atlas, and 1 GB at worst: more is a mistake.
 inline constexpr std::size_t max_triangles = std::size_t{1} << 22;
 
+// A scene without a triangle that has an area.
+inline constexpr const char* nothing_to_light = "has no triangles with an area: nothing to light";
+
 // How far an exporter's rounding may push a TEXCOORD_1 out of the unit square; it is pulled back.
 inline constexpr float atlas_rounding = 0.01f;
 

@@ -92,7 +92,8 @@ std::optional<Accessor> colours_of(const tinygltf::Model& model, const tinygltf:
   if (set < 0) return std::nullopt;
   const std::string name = "TEXCOORD_" + std::to_string(set);
   if (!primitive.attributes.contains(name)) {
-    oddities.remarks.add("has no " + name + " for its texture, whose corner colours it all", what);
+    oddities.remarks.add("has no " + name + " for its texture, whose corner colours it all", what,
+                         "export it with the texture's coordinates, or take the texture off");
     return std::nullopt;
   }
   return coordinates(model, primitive, name, vertices, what, "");

@@ -16,25 +16,31 @@ std::string printable(std::string text) {
   return text;
 }
 
-void Remarks::add(const std::string& what, const std::string& where) {
+std::string text_of(const Remark& remark) {
+  if (remark.where.empty()) return remark.what;
+  const std::string more = remark.count > 1 ? " and " + std::to_string(remark.count - 1) + " more" : "";
+  return remark.where + more + ": " + remark.what;
+}
+
+void Remarks::add(const std::string& what, const std::string& where, const std::string& advice,
+                  std::size_t count) {
   auto found = std::ranges::find(remarks_, what, &Remark::what);
   if (found == remarks_.end() && remarks_.size() == most_told) {
     ++left_out_;
     return;
   }
-  if (found == remarks_.end()) found = remarks_.insert(found, {what, where, 0});
-  ++found->count;
+  if (found == remarks_.end()) found = remarks_.insert(found, {what, where, 0, advice});
+  found->count += count;
+}
+
+void Remarks::append(const Remarks& others) {
+  for (const auto& [what, where, count, advice] : others.remarks_) add(what, where, advice, count);
+  left_out_ += others.left_out_;
 }
 
 void Remarks::tell(const std::string& file) const {
   for (const Remark& remark : remarks_) {
-    std::string line = file + ": ";
-    if (!remark.first.empty()) {
-      line += remark.first;
-      if (remark.count > 1) line += " and " + std::to_string(remark.count - 1) + " more";
-      line += ": ";
-    }
-    spdlog::warn("{}", printable(line + remark.what));
+    spdlog::warn("{}", printable(file + ": " + text_of(remark)));
   }
   if (left_out_) spdlog::warn("{}: and {} more remarks", file, left_out_);
 }

@@ -5,24 +5,25 @@
 #include <string>
 #include <vector>
 
-namespace lichtveld::scene {
+#include "lichtveld/scene/check.hpp"
 
-// Names in a file are anybody's text: this is without control characters, and not endless.
-std::string printable(std::string text);
+namespace lichtveld::scene {
 
 // The same of many nodes or materials is one line with their number.
 class Remarks {
  public:
-  // `where` is what it is said of ("material "red""), or empty for the file.
-  void add(const std::string& what, const std::string& where = {});
+  // `where` is what it is said of ("material "red""), or empty for the file; `advice` what to change;
+  // `count` of what `what` itself counts.
+  void add(const std::string& what, const std::string& where = {}, const std::string& advice = {},
+           std::size_t count = 1);
+  void append(const Remarks& others);
   // As warnings, in the order in which they came up.
   void tell(const std::string& file) const;
 
+  const std::vector<Remark>& all() const { return remarks_; }
+  std::size_t left_out() const { return left_out_; }
+
  private:
-  struct Remark {
-    std::string what, first;  // where first
-    std::size_t count = 0;
-  };
   std::vector<Remark> remarks_;
   std::size_t left_out_ = 0;  // beyond the kinds that are told
 };

@@ -10,7 +10,9 @@ namespace lichtveld::scene {
 std::span<const glm::dmat4> SkinReader::poses(int skin, const std::string& what) {
   auto found = read_.find(skin);
   if (found == read_.end()) found = read_.emplace(skin, read(skin, what)).first;
-  if (found->second.empty()) remarks_.add("has a skin whose joints are not in the scene; it is ignored", what);
+  if (found->second.empty())
+    remarks_.add("has a skin whose joints are not in the scene; it is ignored", what,
+                 "add the skin's joints to the scene, or take the skin off");
   return found->second;
 }
 

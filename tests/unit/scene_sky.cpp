@@ -192,7 +192,7 @@ TEST_F(Skies, WhatSwitchesAndDoesNotShineIsTold) {
   builder_.gltf["nodes"][0]["extras"]["switchable"] = true;
   LogCapture log;
   load();
-  EXPECT_THAT(log.take(), HasSubstr("node \"floor\" is to be a light, and nothing of it shines"));
+  EXPECT_THAT(log.take(), HasSubstr("node \"floor\": is to be a light, and nothing of it shines"));
 }
 
 }  // namespace

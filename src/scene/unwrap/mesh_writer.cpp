@@ -79,10 +79,10 @@ void fill_set(json& attributes, int set) {
 
 }  // namespace
 
-MeshWriter::MeshWriter(json root, const tinygltf::Model& model)
+MeshWriter::MeshWriter(Document document, const tinygltf::Model& model)
     : model_(model),
-      moved_set_(move_texture_set(root)),
-      file_(std::move(root), model),
+      moved_set_(move_texture_set(document.root)),
+      file_(std::move(document), model),
       one_sided_(file_.root()) {}
 
 void MeshWriter::add(int number, const UsedMesh& mesh, const Atlas& atlas, std::size_t& spot) {

@@ -36,7 +36,7 @@ struct Split;
 class MeshWriter {
  public:
   // Of a file's JSON and its model, which must outlive it.
-  MeshWriter(nlohmann::json root, const tinygltf::Model& model);
+  MeshWriter(Document document, const tinygltf::Model& model);
 
   // A mesh for each of its uses, whose spots are the next of `spot`.
   void add(int number, const UsedMesh& mesh, const Atlas& atlas, std::size_t& spot);

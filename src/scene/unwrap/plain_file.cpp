@@ -54,8 +54,8 @@ json without_compression(json primitive) {
   return primitive;
 }
 
-PlainFile::PlainFile(json root, const tinygltf::Model& model)
-    : root_(std::move(root)), model_(model), is_new_(model.nodes.size()) {
+PlainFile::PlainFile(Document document, const tinygltf::Model& model)
+    : document_(std::move(document)), root_(document_.root), model_(model), is_new_(model.nodes.size()) {
   take_nodes();
 }
 
@@ -251,9 +251,8 @@ PlainFile::Bytes PlainFile::finish() {
     else
       root_[key] = left;
   }
-  const std::string dumped = root_.dump(-1, ' ', false, json::error_handler_t::replace);
-  Bytes text(dumped.begin(), dumped.end());
-  pad(text, ' ');
+  std::string text = document_.text();
+  text.resize((text.size() + 3) / 4 * 4, ' ');
   constexpr std::size_t header = 12, chunk_header = 8;
   const std::size_t length = header + 2 * chunk_header + text.size() + binary_.size();
   if (length > std::numeric_limits<std::uint32_t>::max())

@@ -11,6 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "document.hpp"
+
 namespace lichtveld::scene {
 
 // A primitive whose vertices are written plain.
@@ -22,7 +24,9 @@ class PlainFile {
 
   // Of a file's JSON and its model as it was read: with a scene, and each instance a node. The model must
   // outlive it.
-  PlainFile(nlohmann::json root, const tinygltf::Model& model);
+  PlainFile(Document document, const tinygltf::Model& model);
+  PlainFile(const PlainFile&) = delete;
+  PlainFile& operator=(const PlainFile&) = delete;
 
   nlohmann::json& root() { return root_; }
 
@@ -52,7 +56,8 @@ class PlainFile {
   void take_nodes();
   void carry_images();
 
-  nlohmann::json root_;
+  Document document_;
+  nlohmann::json& root_;
   const tinygltf::Model& model_;
   nlohmann::json accessors_ = nlohmann::json::array(), views_ = nlohmann::json::array(),
                  meshes_ = nlohmann::json::array();

@@ -1,20 +1,15 @@
 #include "sheets.hpp"
 
 #include <algorithm>
-#include <boost/geometry.hpp>
-#include <boost/geometry/geometries/box.hpp>
-#include <boost/geometry/geometries/point.hpp>
-#include <boost/geometry/index/rtree.hpp>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "accessor.hpp"
+#include "bodies_in_space.hpp"
 #include "flat_triangle.hpp"
 #include "model.hpp"
 #include "skins.hpp"
 #include "vertices.hpp"
-#include "welding.hpp"
 
 namespace lichtveld::scene {
 namespace {
@@ -108,60 +103,6 @@ std::vector<double> posed_areas(const tinygltf::Model& model, const UsedMesh& me
   }
   return areas;
 }
-
-// Which bodies of these are seen from outside alone: closed, and nothing of the scene lies within their box.
-class Solids {
- public:
-  explicit Solids(const Meshes& meshes) {
-    std::vector<Point> points;
-    for (const auto& [number, mesh] : meshes) {
-      std::vector<Corners> all;
-      for (const auto& sheet : mesh.sheets) all.insert(all.end(), sheet.corners.begin(), sheet.corners.end());
-      bodies_[number] = find_bodies(all);
-      const auto& bodies = bodies_[number];
-      for (const auto& use : mesh.uses)
-        for (std::size_t body = 0; body < bodies.closed.size(); ++body)
-          points.push_back(point((use.world * glm::dvec4((bodies.min[body] + bodies.max[body]) / 2.0f, 1))));
-    }
-    const boost::geometry::index::rtree<Point, boost::geometry::index::rstar<16>> tree(points);
-    for (const auto& [number, mesh] : meshes) {
-      auto& bodies = bodies_[number];
-      for (const auto& use : mesh.uses)
-        for (std::size_t body = 0; body < bodies.closed.size(); ++body) {
-          if (!bodies.closed[body]) continue;
-          glm::dvec3 low(std::numeric_limits<double>::infinity()), high(-low);
-          for (unsigned corner = 0; corner < 8; ++corner) {
-            glm::dvec4 at(0, 0, 0, 1);
-            for (unsigned axis = 0; axis < 3; ++axis)
-              at[static_cast<int>(axis)] =
-                  (corner >> axis & 1 ? bodies.max : bodies.min)[body][static_cast<int>(axis)];
-            const glm::dvec3 place = use.world * at;
-            low = glm::min(low, place);
-            high = glm::max(high, place);
-          }
-          const Box box(point(low), point(high));
-          std::size_t inside = 0;
-          for (auto found = tree.qbegin(boost::geometry::index::within(box));
-               found != tree.qend() && inside < 2; ++found)
-            ++inside;
-          if (inside > 1) bodies.closed[body] = false;  // more than its own middle
-        }
-    }
-  }
-
-  // Whether a triangle, counted over all sheets of the mesh, is of such a body.
-  bool has(int mesh, std::size_t triangle) const {
-    const auto& bodies = bodies_.at(mesh);
-    return bodies.closed[bodies.of[triangle]];
-  }
-
- private:
-  using Point = boost::geometry::model::point<double, 3, boost::geometry::cs::cartesian>;
-  using Box = boost::geometry::model::box<Point>;
-  static Point point(const glm::dvec3& at) { return {at.x, at.y, at.z}; }
-
-  std::map<int, Bodies> bodies_;
-};
 
 }  // namespace
 
@@ -270,12 +211,12 @@ void add_backs(Meshes& meshes) {
   const bool any = std::ranges::any_of(
       meshes, [](const auto& entry) { return std::ranges::any_of(entry.second.sheets, &Sheet::double_sided); });
   if (!any) return;
-  const Solids solids(meshes);
+  const BodiesInSpace bodies(meshes);
   for (auto& [number, mesh] : meshes) {
     std::size_t first = 0;
     for (auto& sheet : mesh.sheets) {
       for (std::size_t t = 0; t < sheet.fronts && sheet.double_sided; ++t) {
-        if (solids.has(number, first + t)) continue;
+        if (bodies.is_solid_alone(number, first + t)) continue;
         const auto [a, b, c] = sheet.triangles[t];
         const auto& at = sheet.corners[t];
         sheet.corners.push_back({at[0], at[2], at[1]});

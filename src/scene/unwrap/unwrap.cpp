@@ -54,6 +54,13 @@ std::size_t lay_flat(Meshes& meshes, std::uint32_t size) {
   return anew;
 }
 
+bool has_triangles(const Meshes& meshes) {
+  return std::ranges::any_of(meshes, [](const auto& entry) {
+    return std::ranges::any_of(entry.second.sheets,
+                               [](const Sheet& sheet) { return std::ranges::any_of(sheet.corners, has_area); });
+  });
+}
+
 }  // namespace
 
 std::optional<Unwrapped> unwrap(const std::filesystem::path& file, const tinygltf::Model& model,
@@ -76,7 +83,7 @@ std::optional<Unwrapped> unwrap(const std::filesystem::path& file, const tinyglt
       }
   if (spots.empty()) return std::nullopt;  // load() says what is wrong
   const Atlas atlas = packed(spots, options);
-  MeshWriter writer(read_json(file), model);
+  MeshWriter writer(document_of(file), model);
   std::size_t spot = 0;
   for (const auto& [number, mesh] : meshes) writer.add(number, mesh, atlas, spot);
   result.glb = writer.finish();
@@ -94,8 +101,10 @@ Unwrapped unwrap(const std::filesystem::path& file, const UnwrapOptions& options
     Unwrapped result;
     if (auto made = unwrap(file, model, options))
       result = std::move(*made);
+    else if (!has_triangles(used_meshes(model)))
+      throw SceneError(nothing_to_light);
     else
-      result.glb = PlainFile(read_json(file), model).finish();
+      result.glb = PlainFile(document_of(file), model).finish();
     if (!model.scenes.empty())
       result.beside = sky_file_of(model.scenes[static_cast<std::size_t>(scene_of(model))].extras);
     return result;

@@ -31,8 +31,7 @@ Twins find_twins(std::span<const Places> places) {
   return twins;
 }
 
-Bodies find_bodies(std::span<const Corners> triangles) {
-  const auto places = welded(triangles);
+Bodies find_bodies(std::span<const Corners> triangles, std::span<const Places> places) {
   Sets sets(3 * triangles.size());
   std::unordered_map<std::uint64_t, std::int64_t> balance;  // of an edge, by its ends
   for (const auto& corners : places)
@@ -43,19 +42,18 @@ Bodies find_bodies(std::span<const Corners> triangles) {
     }
   Bodies bodies;
   std::unordered_map<std::size_t, std::uint32_t> known;
-  std::vector<double> volume;
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     const auto [found, is_new] =
-        known.try_emplace(sets.find_set(places[t][0]), static_cast<std::uint32_t>(volume.size()));
+        known.try_emplace(sets.find_set(places[t][0]), static_cast<std::uint32_t>(bodies.volume.size()));
     const auto body = found->second;
     if (is_new) {
-      volume.push_back(0);
+      bodies.volume.push_back(0);
       bodies.closed.push_back(true);
       bodies.min.push_back(triangles[t][0]);
       bodies.max.push_back(triangles[t][0]);
     }
     bodies.of.push_back(body);
-    volume[body] += glm::dot(glm::dvec3(triangles[t][0]), cross_of(triangles[t])) / 6;
+    bodies.volume[body] += glm::dot(glm::dvec3(triangles[t][0]), cross_of(triangles[t])) / 6;
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint64_t a = places[t][k], b = places[t][(k + 1) % 3];
       if (balance[std::min(a, b) << 32 | std::max(a, b)] != 0) bodies.closed[body] = false;
@@ -63,8 +61,6 @@ Bodies find_bodies(std::span<const Corners> triangles) {
       bodies.max[body] = glm::max(bodies.max[body], triangles[t][k]);
     }
   }
-  for (std::size_t body = 0; body < volume.size(); ++body)
-    if (!(volume[body] > 0)) bodies.closed[body] = false;
   return bodies;
 }
 

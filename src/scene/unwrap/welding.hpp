@@ -79,12 +79,16 @@ Twins find_twins(std::span<const Places> places);
 using Sets = boost::disjoint_sets_with_storage<>;
 
 // For each triangle the piece that it is of, where pieces hang together by edges, and whether each piece is
-// closed: every edge runs both ways equally often, and more space is inside than outside.
+// closed: every edge runs both ways equally often.
 struct Bodies {
   std::vector<std::uint32_t> of;
   std::vector<bool> closed;
+  std::vector<double> volume;       // of each that is closed [m3], below 0 where it faces inwards
   std::vector<glm::vec3> min, max;  // of each [m]
+
+  // Whether it is closed, and more space is inside than outside.
+  bool is_solid(std::size_t body) const { return closed[body] && volume[body] > 0; }
 };
-Bodies find_bodies(std::span<const Corners> triangles);
+Bodies find_bodies(std::span<const Corners> triangles, std::span<const Places> places);
 
 }  // namespace lichtveld::scene

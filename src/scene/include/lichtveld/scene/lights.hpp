@@ -25,6 +25,9 @@ Scene dimmed(Scene scene, const Scales& scales);
 glm::vec3 irradiance_of(const PunctualLight& light, const glm::vec3& offset, const glm::vec3& place,
                         const glm::vec3& normal, const glm::vec3& face);
 
+// What a point or a spot gives in all directions [W]; 0 of a directional one, which has no end.
+glm::vec3 flux_of(const PunctualLight& light);
+
 // L [W m^-2 sr^-1] of the sky as it is seen along a unit vector.
 glm::vec3 radiance_of(const Sky& sky, const glm::vec3& direction);
 // Along which the middle of a pixel is seen, unit; and how much of the sphere one of that row is [sr].
