@@ -233,9 +233,12 @@ Scene read_scene(const std::filesystem::path& file, const LoadOptions& options, 
       throw SceneError(unwrapped->reason + ": leave out --keep-uv, or give it charts that do not overlap");
     spdlog::info("{}: {}", scene.file, printable(summary_of(*unwrapped)));
     scene.unwrapped = std::move(unwrapped->glb);
+    scene.unwrapped_size = unwrapped->size;
     Remarks told;  // once is enough
     model = parse_model(scene.unwrapped, file, told);
   }
+  if (!options.unwrap.light_map.empty())
+    scene.beside = sky_file_of(model.scenes[static_cast<std::size_t>(scene_of(model))].extras);
   Materials materials = read_materials(model);
   std::vector<Piece> pieces =
       cut_uneven(read_pieces(model, options, materials, scene, oddities), materials, scene);

@@ -9,6 +9,7 @@
 #include "accessor.hpp"
 #include "image.hpp"
 #include "lichtveld/scene/scene.hpp"
+#include "parts.hpp"
 
 namespace lichtveld::scene {
 namespace {
@@ -219,6 +220,12 @@ void PlainFile::carry_images() {
     image["mimeType"] = std::string("image/") + format;
     image["bufferView"] = add_view(bytes, 0, 0);
   }
+}
+
+void PlainFile::name_light_map(const std::string& uri) {
+  json& extras = root_["scenes"].at(static_cast<std::size_t>(scene_of(model_)))["extras"];
+  if (!extras.is_object()) extras = json::object();
+  extras["lightMap"] = uri;
 }
 
 PlainFile::Bytes PlainFile::finish() {
