@@ -1,10 +1,10 @@
 #!/usr/bin/env node
 /**
- * Redraws docs/pictures: the furnished room in its different lights, two browsers in one room, a strip of one while the other moves its cube, and what each pass
- * makes of the Cornell room. Needs the built render
+ * Redraws docs/pictures: the furnished room in its different lights, two browsers in one room, a strip of one while the other moves its cube, what each pass
+ * makes of the Cornell room, and the commonest faults of scenes (alone with the word `faults`). Needs the built render
  * server and web client, a Chromium and oiiotool; `./dev pictures` sees to that and to a network in which they meet.
  *
- *   tests/e2e/own_network.sh node tools/pictures.mjs
+ *   tests/e2e/own_network.sh node tools/pictures.mjs [faults]
  *
  * LICHTVELD names another render server than build/release/lichtveld. What can be seen on a picture is told in
  * docs/algorithm.md; a picture of a light map has two pixels a texel, without filtering.
@@ -16,6 +16,8 @@ import { join, relative } from 'node:path';
 import { PNG } from 'pngjs';
 import { launch } from '../tests/e2e/browser.js';
 import { executable, play, root, roomPath, scenePath } from '../tests/e2e/programs.js';
+import { beside } from './pictures/beside.mjs';
+import { drawFaults } from './pictures/faults.mjs';
 
 const folder = join(root, 'docs/pictures');
 const quality = ['--size', '256', '--psf', '384', '--bounces', '3'];
@@ -206,20 +208,6 @@ async function drawFurnishedRoom() {
   });
 }
 
-/** Pictures of the same height beside each other. */
-function beside(pictures) {
-  const all = new PNG({
-    width: pictures.reduce((width, picture) => width + picture.width + gap, -gap),
-    height: pictures[0].height,
-  });
-  let left = 0;
-  for (const picture of pictures) {
-    PNG.bitblt(picture, all, 0, 0, picture.width, picture.height, left, 0);
-    left += picture.width + gap;
-  }
-  return PNG.sync.write(all, { colorType: 2, filterType: 4, deflateStrategy: 0 });
-}
-
 /** What the second player sees while the first holds an arrow: light and shadow go with the cube. */
 async function drawMovingCube() {
   await withTwoPlayers(moving, async ([first, second]) => {
@@ -249,7 +237,7 @@ async function drawMovingCube() {
       pictures.push(PNG.sync.read(await second.page.screenshot({ clip: stripClip })));
     }
     await keyboard.up('ArrowRight');
-    writeFileSync(join(folder, 'moving-cube.png'), beside(pictures));
+    writeFileSync(join(folder, 'moving-cube.png'), beside(pictures, gap));
   });
 }
 
@@ -267,27 +255,36 @@ async function drawTwoBrowsers() {
     const [left, right] = await Promise.all(
       players.map(async ({ page }) => PNG.sync.read(await page.screenshot())),
     );
-    writeFileSync(join(folder, 'two-browsers.png'), beside([left, right]));
+    writeFileSync(join(folder, 'two-browsers.png'), beside([left, right], gap));
   });
 }
 
+/** All but the faults. */
+async function drawRooms() {
+  await drawFurnishedRoom();
+  drawPasses();
+  await drawTwoBrowsers();
+  await drawMovingCube();
+  return [
+    'room.jpg',
+    'room-lights.jpg',
+    'geometry_texture.png',
+    'emit_radiance.png',
+    'stencil_routing.png',
+    'blend.png',
+    'brdf.png',
+    'tone_map.png',
+    'two-browsers.png',
+    'moving-cube.png',
+  ];
+}
+
+const only = process.argv[2];
+if (only !== undefined && only !== 'faults')
+  throw new Error(`pictures.mjs draws all or faults, not '${only}'`);
 mkdirSync(folder, { recursive: true });
-await drawFurnishedRoom();
-drawPasses();
-await drawTwoBrowsers();
-await drawMovingCube();
-const names = [
-  'room.jpg',
-  'room-lights.jpg',
-  'geometry_texture.png',
-  'emit_radiance.png',
-  'stencil_routing.png',
-  'blend.png',
-  'brdf.png',
-  'tone_map.png',
-  'two-browsers.png',
-  'moving-cube.png',
-];
+const names = only ? [] : await drawRooms();
+names.push(...(await drawFaults(join(folder, 'faults'))).map((name) => join('faults', name)));
 for (const name of names) {
   const path = join(folder, name);
   const { size } = statSync(path);

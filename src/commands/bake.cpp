@@ -14,6 +14,7 @@
 #include "lichtveld/scene/atlas.hpp"
 #include "lichtveld/scene/lights.hpp"
 #include "lichtveld/stream/encoder.hpp"
+#include "lit_file.hpp"
 
 namespace lichtveld::commands {
 
@@ -40,18 +41,40 @@ bool is_of_a_pass(const std::filesystem::path& file, const std::filesystem::path
          target.stem().has_extension();
 }
 
-// All of them before long work, and so that none is written over another or over the scene.
-void check_outputs(const BakeOptions& options) {
-  files::check_place(options.out, ".exr");
-  if (!options.png.empty()) files::check_place(options.png, ".png");
-  if (!options.report.empty()) files::check_place(options.report);
-  check(options.capture);
-  std::vector<files::NamedFile> files = {{"the scene", options.scene}};
+std::vector<files::NamedFile> outputs_of(const BakeOptions& options) {
+  std::vector<files::NamedFile> files;
   for (const auto& [name, file] : {std::pair{"--out", options.out},
+                                   {"--gltf", options.gltf},
                                    {"--png", options.png},
                                    {"--report", options.report},
                                    {"--capture", options.capture.file}})
     if (!file.empty()) files.push_back({name, file});
+  return files;
+}
+
+// Programs that read the one look for the other beside it, and find things where the file has them.
+void check_gltf(const BakeOptions& options) {
+  files::check_place(options.gltf, ".glb");
+  const auto folder = [](const std::filesystem::path& file) {
+    return files::target_of(file.has_parent_path() ? file.parent_path() : ".");
+  };
+  if (folder(options.gltf) != folder(options.out))
+    throw UsageError("--gltf " + options.gltf + " and --out " + options.out +
+                     " are in two folders; give them one, as the scene names its light map beside it");
+  if (!options.moves.empty())
+    throw UsageError(
+        "--gltf has all nodes where the scene has them, and --move would light another; leave one out");
+}
+
+// All of them before long work, and so that none is written over another or over the scene.
+void check_outputs(const BakeOptions& options) {
+  files::check_place(options.out, ".exr");
+  if (!options.gltf.empty()) check_gltf(options);
+  if (!options.png.empty()) files::check_place(options.png, ".png");
+  if (!options.report.empty()) files::check_place(options.report);
+  check(options.capture);
+  auto files = outputs_of(options);
+  files.insert(files.begin(), {"the scene", options.scene});
   files::check_distinct(files);
   if (!options.lights_apart.empty()) files::make_folder(options.lights_apart);
   if (options.dump.empty()) return;
@@ -62,17 +85,43 @@ void check_outputs(const BakeOptions& options) {
   files::make_folder(options.dump);
 }
 
-void bake(const BakeOptions& options) {
+// An atlas that had to be larger than is said is baked as large, unless a size is asked for.
+void suit_atlas(BakeOptions& options, const scene::Scene& scene) {
+  const auto size = scene.unwrapped_size;
+  if (size <= options.settings.size) return;
+  if (options.fixed.size) {
+    spdlog::warn("{}: its charts find no room in {} x {} texels, and share some at that size; try --size {}",
+                 options.scene, options.settings.size, options.settings.size, size);
+    return;
+  }
+  options.settings.size = size;
+  options.fixed.size = size;
+}
+
+// The scene for other programs; nothing may be written over its sky.
+LitFile lit_scene(const BakeOptions& options, const scene::UnwrapOptions& unwrap, scene::Scene& scene) {
+  if (options.gltf.empty()) return {};
+  auto lit = lit_file(options.scene, unwrap, scene, options.gltf);
+  for (const auto& beside : lit.beside)
+    for (const auto& output : outputs_of(options))
+      files::check_distinct({{"the scene's sky", beside.to}, output});
+  return lit;
+}
+
+void bake(BakeOptions options) {
   lightfield::check(options.settings);
   check_outputs(options);
   if (options.dump_psf >= options.settings.psf)
     throw UsageError("--dump-psf " + std::to_string(options.dump_psf) + ": the directions are numbered 0.." +
                      std::to_string(options.settings.psf - 1));
   const progress::Work work("bake");
-  BakeJob job{
-      .scene = load(options.scene, options.lights, {.size = options.settings.size, .keep_uv = options.keep_uv}),
-      .moves = {},
-      .scales = {}};
+  const scene::UnwrapOptions unwrap{
+      .size = options.settings.size,
+      .keep_uv = options.keep_uv,
+      .light_map = options.gltf.empty() ? "" : uri_of(std::filesystem::path(options.out).filename())};
+  BakeJob job{.scene = load(options.scene, options.lights, unwrap), .moves = {}, .scales = {}};
+  suit_atlas(options, job.scene);
+  const LitFile lit = lit_scene(options, unwrap, job.scene);
   job.scales = scales_of(job.scene, options.lights);
   // Without --live lights are from the start as they are asked for, for methods that know none, too.
   if (!options.live) {
@@ -98,6 +147,8 @@ void bake(const BakeOptions& options) {
   for (const auto& [light, irradiance] : baked.apart)
     files::write_exr(std::filesystem::path(options.lights_apart) / light, irradiance, baked.size);
   if (baked.shown) files::write_bytes(options.png, stream::encode_png(baked.shown->bytes, baked.shown->size));
+  write(lit.beside);
+  if (!options.gltf.empty()) files::write_bytes(options.gltf, lit.glb);
   if (!options.report.empty()) files::write_text(options.report, baked.report.dump(2) + "\n");
   spdlog::info("{}: {} texels, {} bounces, {:.0f} ms on {}", options.out, baked.report["texels_valid"].dump(),
                baked.report["bounces_used"].dump(), baked.report["time_ms"]["total"].get<double>(),
@@ -121,6 +172,12 @@ void add_bake(CLI::App& application) {
                    "Irradiance [W/m2]: float32 RGBA, A = 1 on valid texels; RGB goes on beyond the charts")
       ->required()
       ->type_name("E.exr");
+  command
+      ->add_option(
+          "--gltf", options->gltf,
+          "The scene with its light map, for other programs: as unwrap writes it, in the folder of --out, "
+          "which its scene's extras.lightMap names")
+      ->type_name("OUT.glb");
   command->add_option("--png", options->png, "What players see: tone-mapped radiance, sRGB")
       ->type_name("map.png");
   command->add_option("--report", options->report, "Device, times, memory, counts, as JSON")

@@ -14,7 +14,7 @@
 namespace lichtveld::commands {
 
 struct BakeOptions {
-  std::string scene, out, png, report, dump, lights_apart;
+  std::string scene, out, gltf, png, report, dump, lights_apart;
   LightOptions lights;
   bool keep_uv = false;
   std::uint32_t dump_psf = 0;

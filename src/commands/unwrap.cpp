@@ -5,6 +5,7 @@
 #include "lichtveld/files/output.hpp"
 #include "lichtveld/progress/progress.hpp"
 #include "lichtveld/scene/unwrap.hpp"
+#include "lit_file.hpp"
 #include "options.hpp"
 
 namespace lichtveld::commands {
@@ -16,25 +17,14 @@ struct UnwrapCommand {
   scene::UnwrapOptions options;
 };
 
-// A sky stays a file of its own, which has to lie beside its scene.
-void copy_beside(const std::string& name, const UnwrapCommand& command) {
-  if (name.empty()) return;
-  const auto from = std::filesystem::path(command.scene).parent_path() / name;
-  const auto to = std::filesystem::path(command.out).parent_path() / name;
-  if (files::target_of(from) == files::target_of(to)) return;
-  std::error_code error;
-  std::filesystem::copy_file(from, to, std::filesystem::copy_options::overwrite_existing, error);
-  if (error) throw files::OutputError(from.string() + " cannot be copied beside the scene: " + error.message());
-  spdlog::info("{}: the scene's sky, beside it", to.string());
-}
-
 void unwrap(const UnwrapCommand& command) {
   check(command.options);
   files::check_place(command.out, ".glb");
   files::check_distinct({{"the scene", command.scene}, {"--out", command.out}});
   const progress::Work work("unwrap");
   const auto unwrapped = scene::unwrap(command.scene, command.options);
-  copy_beside(unwrapped.beside, command);
+  // A sky stays a file of its own, which has to lie beside its scene.
+  write(files_beside(unwrapped.beside, command.scene, command.out));
   files::write_bytes(command.out, unwrapped.glb);
   spdlog::info(
       "{}: {}", command.out,

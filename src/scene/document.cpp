@@ -190,6 +190,14 @@ Document::Document(std::span<const std::uint8_t> text)
   for (const auto& [begin, end] : places) extras_.emplace_back(view_of(text).substr(begin, end - begin));
 }
 
+json Document::extras_of(const json& owner) const {
+  const auto found = owner.find("extras");
+  if (found == owner.end()) return json::object();
+  const auto* kept = found->get_ptr<const std::string*>();
+  if (!kept || !kept->starts_with(mark_)) return *found;
+  return json::parse(extras_.at(std::stoul(kept->substr(mark_.size()))));
+}
+
 std::string Document::text() const {
   const std::string dumped = root.dump(-1, ' ', false, json::error_handler_t::replace), quoted = '"' + mark_;
   std::size_t size = dumped.size();

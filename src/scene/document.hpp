@@ -18,6 +18,10 @@ class Document {
   // Each of the extras is a string here that stands for its text.
   nlohmann::json root;
 
+  // What the extras of an object in `root` say, to be changed and put in their place; an empty object where there
+  // are none.
+  nlohmann::json extras_of(const nlohmann::json& owner) const;
+
   // The document as text, extras as they were. What is no UTF-8 is replaced.
   std::string text() const;
 

@@ -242,10 +242,13 @@ Scene read_scene(const std::filesystem::path& file, const LoadOptions& options, 
     if (options.unwrap.keep_uv)
       throw SceneError(unwrapped->reason + ": leave out --keep-uv, or give it charts that do not overlap");
     scene.unwrapped = std::move(unwrapped->glb);
+    scene.unwrapped_size = unwrapped->size;
     report.unwrapped = std::move(unwrapped);
     Remarks told;  // once is enough
     model = parse_model(scene.unwrapped, file, told);
   }
+  if (!options.unwrap.light_map.empty())
+    scene.beside = sky_file_of(model.scenes[static_cast<std::size_t>(scene_of(model))].extras);
   Materials materials = read_materials(model);
   std::vector<Piece> pieces = read_pieces(model, options, materials, scene, oddities);
   if (report.details) keep_whole(pieces, report.details->whole);

@@ -41,6 +41,8 @@ class MeshWriter {
   // A mesh for each of its uses, whose spots are the next of `spot`.
   void add(int number, const UsedMesh& mesh, const Atlas& atlas, std::size_t& spot);
 
+  void name_light_map(const std::string& uri) { file_.name_light_map(uri); }
+
   std::vector<std::uint8_t> finish() { return file_.finish(); }
 
  private:

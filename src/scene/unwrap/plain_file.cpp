@@ -9,6 +9,7 @@
 #include "accessor.hpp"
 #include "image.hpp"
 #include "lichtveld/scene/scene.hpp"
+#include "parts.hpp"
 
 namespace lichtveld::scene {
 namespace {
@@ -219,6 +220,14 @@ void PlainFile::carry_images() {
     image["mimeType"] = std::string("image/") + format;
     image["bufferView"] = add_view(bytes, 0, 0);
   }
+}
+
+void PlainFile::name_light_map(const std::string& uri) {
+  json& scene = root_["scenes"].at(static_cast<std::size_t>(scene_of(model_)));
+  json extras = document_.extras_of(scene);
+  if (!extras.is_object()) extras = json::object();
+  extras["lightMap"] = uri;
+  scene["extras"] = std::move(extras);
 }
 
 PlainFile::Bytes PlainFile::finish() {

@@ -44,6 +44,9 @@ class PlainFile {
   // From now on a node shows an added mesh.
   void show(std::size_t node, int mesh);
 
+  // Its scene's extras.lightMap; extras that are no object make room for it.
+  void name_light_map(const std::string& uri);
+
   // The .glb. Meshes that were not added are those of the nodes that were not asked to change.
   Bytes finish();
 

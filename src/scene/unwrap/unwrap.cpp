@@ -86,6 +86,7 @@ std::optional<Unwrapped> unwrap(const std::filesystem::path& file, const tinyglt
   MeshWriter writer(document_of(file), model);
   std::size_t spot = 0;
   for (const auto& [number, mesh] : meshes) writer.add(number, mesh, atlas, spot);
+  if (!options.light_map.empty()) writer.name_light_map(options.light_map);
   result.glb = writer.finish();
   result.size = atlas.size;
   result.charts = spots.size();
@@ -99,12 +100,15 @@ Unwrapped unwrap(const std::filesystem::path& file, const UnwrapOptions& options
     Remarks remarks;  // load() tells them
     const auto model = read_model(file, remarks);
     Unwrapped result;
-    if (auto made = unwrap(file, model, options))
+    if (auto made = unwrap(file, model, options)) {
       result = std::move(*made);
-    else if (!has_triangles(used_meshes(model)))
+    } else if (!has_triangles(used_meshes(model))) {
       throw SceneError(nothing_to_light);
-    else
-      result.glb = PlainFile(document_of(file), model).finish();
+    } else {
+      PlainFile plain(document_of(file), model);
+      if (!options.light_map.empty()) plain.name_light_map(options.light_map);
+      result.glb = plain.finish();
+    }
     if (!model.scenes.empty())
       result.beside = sky_file_of(model.scenes[static_cast<std::size_t>(scene_of(model))].extras);
     return result;

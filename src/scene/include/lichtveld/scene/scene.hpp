@@ -136,14 +136,20 @@ struct Scene {
   std::vector<PunctualLight> punctual;
   std::optional<Sky> sky;
   std::vector<Light> lights;
-  // Where the file's own atlas cannot be used: the scene as one .glb with the one that was made (unwrap.hpp).
+  // Where the file's own atlas cannot be used: the scene as one .glb with the one that was made (unwrap.hpp),
+  // and the texels a side at which its charts lie on whole texels, two apart; else empty and 0.
   std::vector<std::uint8_t> unwrapped;
+  std::uint32_t unwrapped_size = 0;
+  // With UnwrapOptions::light_map: the file that `unwrapped` names and that is not in it, its sky; or empty.
+  std::string beside;
 };
 
 struct UnwrapOptions {
   std::uint32_t size = 256;     // texels a side, 16..4096; doubled until the charts find room
   double texels_per_metre = 0;  // 0: as many as find room
   bool keep_uv = false;         // refuse instead, in load()
+  // The URI of its light map, which the written file names in extras.lightMap of its scene; empty: what it has.
+  std::string light_map = {};
 };
 
 struct LoadOptions {
