@@ -9,6 +9,7 @@
 
 #include "command_list.hpp"
 #include "lichtveld/files/output.hpp"
+#include "lichtveld/lightfield/buried.hpp"
 #include "lichtveld/lightfield/engine.hpp"
 #include "lichtveld/progress/progress.hpp"
 #include "lichtveld/scene/lights.hpp"
@@ -101,6 +102,7 @@ void run_check(const CheckOptions& options) {
   CheckedScene result{.file = options.scene,
                       .lumens_per_watt = options.lights.lumens_per_watt,
                       .facts = {},
+                      .texels_buried = lightfield::BuriedTexels(checked.scene, options.size).count(),
                       .outlook = outlook_of(checked, options)};
   result.facts = std::move(checked.facts);
   if (!options.png.empty()) write_picture(options, result.facts.atlas);

@@ -23,6 +23,7 @@ struct CheckedScene {
   std::string file;
   double lumens_per_watt = 1;
   scene::SceneFacts facts;
+  std::uint32_t texels_buried = 0;  // lightfield::BuriedTexels
   Outlook outlook;
 };
 

@@ -92,6 +92,7 @@ nlohmann::ordered_json json_of(const CheckedScene& checked) {
   json["switchable"] = facts.switchable;
   json["lights"] = list(facts.lights, [&](const auto& one) { return light(one, checked.lumens_per_watt); });
   json["atlas"] = atlas(facts.atlas, facts.unwrapped.has_value());
+  json["atlas"]["texels_buried"] = checked.texels_buried;
   json["unwrapped"] = nullptr;
   if (const auto& unwrapped = facts.unwrapped)
     json["unwrapped"] = {{"reason", unwrapped->reason},

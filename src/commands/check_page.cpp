@@ -64,7 +64,8 @@ void add_contents(const CheckedScene& checked, Page& page) {
   if (facts.switchable.empty()) page.line("switchable", "no light (a node's extras.switchable)");
 }
 
-void add_atlas(const scene::SceneFacts& facts, Page& page) {
+void add_atlas(const CheckedScene& checked, Page& page) {
+  const auto& facts = checked.facts;
   const auto& atlas = facts.atlas;
   page.line("atlas", facts.unwrapped ? scene::summary_of(*facts.unwrapped) : "the file's own TEXCOORD_1");
   page.line(fmt::format("at --size {}", atlas.size),
@@ -75,6 +76,11 @@ void add_atlas(const scene::SceneFacts& facts, Page& page) {
                                           density.min, density.max));
   page.line("without a texel", fmt::format("{} charts, {} triangles, {:.3g} m2", atlas.charts_without_texel,
                                            atlas.triangles_without_texel, atlas.area_without_texel));
+  page.line("buried texels",
+            checked.texels_buried == 0
+                ? "none"
+                : fmt::format("{}, inside of what stands there: they take their neighbours' light",
+                              checked.texels_buried));
   page.line("shared texels", atlas.shared.texels == 0 ? "none" : text_of(atlas.shared));
 }
 
@@ -148,7 +154,7 @@ std::string page_of(const CheckedScene& checked) {
   Page page;
   page.title(checked.file);
   add_contents(checked, page);
-  add_atlas(checked.facts, page);
+  add_atlas(checked, page);
   add_meshes(checked.facts, page);
   add_outlook(checked.outlook, page);
   add_findings(checked.facts, page);

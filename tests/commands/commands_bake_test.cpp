@@ -75,6 +75,32 @@ TEST_F(Bake, LightGoesOnBeyondTheCharts) {
   EXPECT_GT(beside_charts, 100);
 }
 
+// A pillar through the floor.
+TEST_F(Bake, BuriedTexelsTakeTheLightOfTheirNeighboursUnlessTheyAreToBeLit) {
+  SceneBuilder builder;
+  const int grey = builder.material(glm::vec3(0.5f));
+  builder.box("room", glm::vec3(-1, 0, -1), glm::vec3(1, 2, 1), {0, 0, 0.5f, 0.5f}, grey, true);
+  builder.box("pillar", {-0.3f, -0.2f, -0.3f}, {0.3f, 1, 0.3f}, {0.5f, 0, 1, 0.5f},
+              builder.material(glm::vec3(0.5f), glm::vec3(1)));
+  const auto scene = folder_.write("pillar.glb", builder.glb());
+  const auto bake_to = [&](const std::string& name, const std::string& options) {
+    const auto ran = run("bake " + scene.string() + " --size 128 --bounces 2 --out " + path(name + ".exr") +
+                         " --report " + path(name + ".json") + options);
+    EXPECT_EQ(ran.status, 0) << ran.output;
+    return json::parse(std::ifstream(path(name + ".json")));
+  };
+  for (const std::string method :
+       {"rays --psf 24", "links --psf 24", "thesis --psf 24", "reference --spp 16"}) {
+    EXPECT_GT(bake_to("neighbours", " --method " + method)["texels_buried"], 4) << method;
+    EXPECT_FALSE(bake_to("lit", " --buried lit --method " + method).contains("texels_buried")) << method;
+    const OIIO::ImageBuf taken(path("neighbours.exr")), lit(path("lit.exr"));
+    EXPECT_GT(OIIO::ImageBufAlgo::compare(taken, lit, 0.05f, 0.05f).maxerror, 0.05) << method;
+  }
+  const auto refused = run("bake " + scene.string() + " --buried up --out " + path("E.exr"));
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_THAT(refused.output, HasSubstr("--buried up: choose one of lit|neighbours"));
+}
+
 TEST_F(Bake, ReportsWhatItDid) {
   const auto values = bake("E.exr", "--method thesis --report " + path("r.json") + " --png " + path("map.png"));
   const auto report = json::parse(std::ifstream(path("r.json")));

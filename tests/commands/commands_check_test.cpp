@@ -86,6 +86,7 @@ TEST_F(Check, IsAJsonObject) {
   EXPECT_EQ(object["atlas"]["shared_texels"], 6);
   EXPECT_EQ(object["atlas"]["shared"][0]["nodes"], json({"floor", "wall"}));
   EXPECT_EQ(object["atlas"]["charts_without_texel"], 1);
+  EXPECT_EQ(object["atlas"]["texels_buried"], 0);
   EXPECT_TRUE(object["unwrapped"].is_null());
   EXPECT_TRUE(object["forecast"]["error"].is_null());
   EXPECT_EQ(object["forecast"]["why_not"], "--no-trial");
