@@ -29,6 +29,7 @@ void check_validation(const gpu::Device& device);
 
 // --keep-uv.
 void add_keep_uv_option(CLI::App& command, bool& keep_uv);
+// --buried.
 void add_buried_option(CLI::App& command, lightfield::Settings& settings);
 
 // Throws UsageError for sizes and densities that no atlas has.

@@ -1,11 +1,14 @@
 #include "core/buried.hpp"
 
+#include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <numbers>
 
 #include "core/frame.hpp"
 #include "core/parallel.hpp"
+#include "lichtveld/scene/atlas.hpp"
 
 namespace lichtveld::lightfield {
 
@@ -83,12 +86,16 @@ std::vector<char> find_buried(const scene::RayIndex& index, const scene::Scene& 
   return buried;
 }
 
+// Not TexelRecords: what texels reflect and send is of no use here, and of textures it takes long.
 BuriedTexels::BuriedTexels(const scene::Scene& scene, std::uint32_t size) {
-  const TexelRecords records(scene, size);
+  const auto surfaces = surface_of_triangles(scene);
+  std::vector<TexelRecord> records;
+  for (const auto& [texel, at] : scene::valid_texels(scene, size))
+    records.push_back(record_at(scene, size, at, surfaces[at.triangle], texel));
   const scene::RayIndex index(scene);
-  auto hidden = find_buried(index, scene, records.all());
+  auto hidden = find_buried(index, scene, records);
   std::vector<std::uint32_t> number(std::size_t{size} * size, no_record), waiting;
-  for (std::uint32_t i = 0; i < records.count(); ++i) {
+  for (std::uint32_t i = 0; i < records.size(); ++i) {
     number[records[i].atlas] = i;
     if (!hidden[i]) continue;
     // What something lies on gets no light, and that is right.

@@ -19,7 +19,7 @@ class RayLinks {
  public:
   static constexpr std::uint64_t bytes_a_ray = 16;  // two rows, two distances
 
-  // All of these must outlive it. `hidden`: 1 for rows that are buried wherever bodies are.
+  // All of these but `hidden` must outlive it: 1 for rows that are buried wherever bodies are.
   RayLinks(const scene::RayIndex& index, const scene::Scene& scene, const Rows& rows, const RaySets& sets,
            std::vector<char> hidden);
 

@@ -24,7 +24,8 @@ struct Unwrapped {
 // hair of it overlaps. Otherwise charts of one's own are kept as far as they do not fold, and packed anew, each
 // node's in a place of its own and as large as its surface; what has none is laid flat. A double-sided surface
 // that is not the outside of a closed body becomes two, back to back. The same file gives the same bytes.
-// Throws SceneError as load() does (for a scene without triangles, too), or where no atlas of 4096 texels a side can hold the charts.
+// Throws SceneError as load() does (for a scene without triangles, too), or where no atlas of 4096 texels a side
+// can hold the charts.
 Unwrapped unwrap(const std::filesystem::path& file, const UnwrapOptions& options = {});
 
 // What was done, as a sentence goes on: "unwrapped into 12 charts ...".
