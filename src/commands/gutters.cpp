@@ -15,7 +15,7 @@ void fill_gutters(std::span<glm::vec4> texels, std::uint32_t size) {
       for (std::int64_t u = std::max<std::int64_t>(x - 1, 0); u <= std::min(x + 1, n - 1); ++u)
         each(static_cast<std::uint32_t>(v * n + u));
   };
-  for (std::uint32_t i = 0; i < texels.size(); ++i) has_value[i] = texels[i].a > 0;
+  for (std::uint32_t i = 0; i < texels.size(); ++i) has_value[i] = texels[i] != glm::vec4(0);
   std::vector<bool> is_open(texels.size());
   const auto open_around = [&](std::uint32_t index) {
     for_neighbours(index, [&](std::uint32_t other) {

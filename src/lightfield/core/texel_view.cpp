@@ -9,11 +9,4 @@ std::vector<glm::vec4> TexelView::on_host() const {
   return {host_.begin(), host_.end()};
 }
 
-void TexelView::copy_to(const gpu::Device& device, const gpu::Image& image) const {
-  if (image_ != nullptr)
-    gpu::fill<glm::vec4>(device, image, on_host());
-  else
-    gpu::fill<glm::vec4>(device, image, host_);
-}
-
 }  // namespace lichtveld::lightfield

@@ -17,6 +17,7 @@ Links::Links(const gpu::Device& device, const scene::Scene& scene, const Setting
       links_(device, scene, settings),
       brdf_(device),
       tone_map_(device),
+      over_(device, scene, links_.records()),
       gather_(device, links_.table()) {}
 
 bool Links::compute(Light before, const Moves& moves, const Enough& enough, Solution& solution) {
@@ -87,6 +88,7 @@ bool Links::converge(Light before, const Enough& enough, Solution& solution) {
 }
 
 Shown Links::shown(const Adaptation& adaptation) {
+  over_.put(links_.map(), irradiance_view());
   gpu::Frame frame(device_, {"links", "present"});
   brdf_.record(frame, links_.map());
   links_.find_shown(frame);

@@ -8,6 +8,7 @@
 #include "links/gather.hpp"
 #include "links/kept_links.hpp"
 #include "passes/brdf.hpp"
+#include "passes/over.hpp"
 #include "passes/tone_map.hpp"
 
 namespace lichtveld::lightfield {
@@ -37,6 +38,7 @@ class Links final : public LightField {
   KeptLinks links_;
   Brdf brdf_;
   ToneMap tone_map_;
+  Over over_;
   Gather gather_;
   std::uint32_t next_part_ = 0;  // of the directions, to bounce over
 };

@@ -13,7 +13,8 @@ Presenter::Presenter(const gpu::Device& device, const scene::Scene& scene, const
       map_(device, records),
       geometry_texture_(device),
       brdf_(device),
-      tone_map_(device) {
+      tone_map_(device),
+      over_(device, scene, records) {
   // Where bodies are changes nothing of what is shown here: which texels face the same way.
   Geometry geometry(device, scene);
   geometry.place(scene::Offsets(scene.bodies.size(), glm::vec3(0)));
@@ -30,9 +31,10 @@ void Presenter::dim(const scene::Scales& scales) {
   put_emission(device_, map_, scene_, records_, scales);
 }
 
-Shown Presenter::show(const TexelView& irradiance, const Adaptation& adaptation,
-                      std::span<const float> covered) {
-  irradiance.copy_to(device_, map_.total_irradiance);
+Shown Presenter::show(std::span<const glm::vec4> irradiance, const Adaptation& adaptation,
+                      std::span<const float> covered, std::span<const Over::Instead> instead) {
+  gpu::fill<glm::vec4>(device_, map_.total_irradiance, irradiance);
+  over_.put(map_, {irradiance, map_.size}, instead);
   if (!covered.empty()) gpu::fill<float>(device_, map_.cover, covered);
   gpu::Frame frame(device_, {"present"});
   geometry_texture_.find_shown(frame, map_);
@@ -44,7 +46,7 @@ Shown Presenter::show(const TexelView& irradiance, const Adaptation& adaptation,
 
 Shown present(const gpu::Device& device, const scene::Scene& scene, const TexelView& irradiance) {
   const TexelRecords records(scene, irradiance.width());
-  return Presenter(device, scene, records).show(irradiance, {});
+  return Presenter(device, scene, records).show(irradiance.on_host(), {});
 }
 
 }  // namespace lichtveld::lightfield

@@ -7,6 +7,7 @@
 #include "passes/brdf.hpp"
 #include "passes/geometry_texture.hpp"
 #include "passes/light_map.hpp"
+#include "passes/over.hpp"
 #include "passes/tone_map.hpp"
 
 namespace lichtveld::lightfield {
@@ -19,9 +20,11 @@ class Presenter {
   // Lights give `scales` times what the file says from now on.
   void dim(const scene::Scales& scales);
 
-  // rgb: E [W m^-2], as wide as the atlas. `covered`: texels on which something lies show their nearest open
+  // irradiance: E of the atlas [W m^-2]. `covered`: texels on which something lies show their nearest open
   // one (see GeometryTexture::find_shown), a value above 0 each; as many as the atlas has texels, or none.
-  Shown show(const TexelView& irradiance, const Adaptation& adaptation, std::span<const float> covered = {});
+  // `instead`: what shows a light of its own (see Over).
+  Shown show(std::span<const glm::vec4> irradiance, const Adaptation& adaptation,
+             std::span<const float> covered = {}, std::span<const Over::Instead> instead = {});
 
  private:
   const gpu::Device& device_;
@@ -32,6 +35,7 @@ class Presenter {
   GeometryTexture geometry_texture_;
   Brdf brdf_;
   ToneMap tone_map_;
+  Over over_;
 };
 
 }  // namespace lichtveld::lightfield

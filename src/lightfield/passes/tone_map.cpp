@@ -32,10 +32,11 @@ void ToneMap::record(gpu::Frame& frame, const LightMap& map, const Adaptation& a
                                            .brighter = adaptation.brighter,
                                            .darker = adaptation.darker},
                 1, 1);
-  frame.compute(map_,
-                {gpu::reads("radiance", map.radiance), gpu::reads("shown", map.shown),
-                 gpu::reads("Exposures", exposure_), gpu::writes("presented", map.presented)},
-                map.workgroups, map.workgroups);
+  frame.compute(
+      map_,
+      {gpu::reads("radiance", map.radiance), gpu::reads("shown", map.shown), gpu::reads("over", map.over),
+       gpu::reads("Exposures", exposure_), gpu::writes("presented", map.presented)},
+      map.workgroups, map.workgroups);
   frame.to_host(exposure_);
 }
 

@@ -1,6 +1,6 @@
 // tone_map: radiance to what a browser shows: exposure from a log-luminance histogram over the valid texels,
 // which adapts from map to map, Reinhard's operator on luminance, sRGB. Thesis, section 4.7; Reinhard et al.
-// 2002. Reads radiance, position and shown; writes presented. Costs texels, once a solve.
+// 2002. Reads radiance, position, shown and over; writes presented. Costs texels, once a solve.
 #pragma once
 
 #include "lichtveld/lightfield/shown.hpp"

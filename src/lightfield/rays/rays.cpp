@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "core/buried.hpp"
 #include "core/convergence.hpp"
@@ -139,12 +140,14 @@ void Rays::finish() {
   for (std::uint32_t row = 0; row < rows_.count(); ++row)
     own[row] = gather_.gathered()[row] + glm::vec4(soft[row], 0);
   filter_.average(own, averages_);
+  const auto irradiance_of = [&](std::uint32_t row) {
+    return glm::max(glm::vec3(averages_[row]), 0.0f) + (lamps_.irradiance()[row] - soft[row]);
+  };
   for_each_index(0, rows_.count(), rows_of_a_task, [&](std::uint32_t row) {
-    const auto& record = rows_[row];
-    if (record.atlas == no_atlas_texel) return;
-    irradiance_[record.atlas] =
-        glm::vec4(glm::max(glm::vec3(averages_[row]), 0.0f) + (lamps_.irradiance()[row] - soft[row]), 1);
+    if (const auto texel = rows_[row].atlas; texel != no_atlas_texel)
+      irradiance_[texel] = glm::vec4(irradiance_of(row), 1);
   });
+  for (const auto& [texel, row] : rows_.shown_beside()) irradiance_[texel] = glm::vec4(irradiance_of(row), 0);
 }
 
 double Rays::error_estimate() const {
@@ -163,8 +166,14 @@ Shown Rays::shown(const Adaptation& adaptation) {
   std::vector<float> covered(irradiance_.size(), 0);
   for (std::uint32_t row = 0; row < rows_.count(); ++row)
     if (rows_[row].atlas != no_atlas_texel && links_.buried(row)) covered[rows_[row].atlas] = 1;
+  std::vector<Over::Instead> instead;
+  for (const auto& [texel, row] : rows_.shown_beside()) {
+    const auto& record = rows_[row];
+    instead.push_back({texel, scales()[scene_.surfaces[record.surface].light] * record.emission +
+                                  record.albedo / std::numbers::pi_v<float> * glm::vec3(irradiance_[texel])});
+  }
   presenter_->dim(scales());
-  return presenter_->show(irradiance_view(), adaptation, covered);
+  return presenter_->show(irradiance_, adaptation, covered, instead);
 }
 
 }  // namespace lichtveld::lightfield

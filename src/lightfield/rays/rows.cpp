@@ -34,6 +34,9 @@ constexpr float same_face_apart = 1e-6f;
 constexpr float plane_share = 0.1f;
 constexpr int reach = 2;  // texels beyond its chart's rim that a point may lie
 
+// Places a texel's side along a triangle's edges at which it is looked for the texels that it touches.
+constexpr float touches_a_texel = 2;
+
 // Which way it looks, roughly.
 std::uint32_t facing(const glm::vec3& face) {
   const glm::vec3 size = glm::abs(face);
@@ -90,6 +93,7 @@ Rows::Rows(const scene::Scene& scene, const TexelRecords& records, std::uint32_t
   add_fallbacks(scene);
   add_backs(scene);
   sort(scene.bodies.size(), side);
+  show_fallbacks();
 }
 
 // A place in the middle of each chart that no texel stands for; triangles whose middles lie in the same texel
@@ -197,6 +201,47 @@ void Rows::sort(std::size_t bodies, std::uint32_t side) {
     if (cell.row != no_row) cell.row = moved_to[cell.row];
   for (auto& triangle : triangles_)
     if (triangle.fallback != no_row) triangle.fallback = moved_to[triangle.fallback];
+}
+
+// Where such charts touch a texel that is no chart's; then its neighbours, which filtering reads with it, where
+// they are of no chart either.
+void Rows::show_fallbacks() {
+  const int size = static_cast<int>(size_);
+  std::vector<std::uint32_t> shown(at_.size(), no_row);
+  const auto show = [&](int x, int y, std::uint32_t row) {
+    if (x < 0 || y < 0 || x >= size || y >= size) return;
+    const auto texel = static_cast<std::uint32_t>(y * size + x);
+    if (at_[texel].row != no_row || shown[texel] != no_row) return;
+    shown[texel] = row;
+    shown_beside_.push_back({texel, row});
+  };
+  for (const auto& [origin, u, v, face, turned, surface, face_key, fallback] : triangles_) {
+    if (fallback == no_row) continue;
+    const float longest = std::max({glm::length(u), glm::length(v), glm::length(v - u)});
+    const float steps =
+        std::clamp(std::ceil(longest * touches_a_texel), 1.0f, touches_a_texel * static_cast<float>(size_));
+    for (float i = 0; i < steps; ++i)
+      for (float j = 0; i + j < steps; ++j) {
+        const glm::ivec2 cell(glm::floor(origin + ((i + 1.0f / 3) * u + (j + 1.0f / 3) * v) / steps));
+        show(cell.x, cell.y, fallback);
+      }
+  }
+  for (std::size_t i = 0, touched = shown_beside_.size(); i < touched; ++i) {
+    const auto [texel, row] = shown_beside_[i];
+    const int x = static_cast<int>(texel) % size, y = static_cast<int>(texel) / size;
+    for (int dy = -1; dy <= 1; ++dy)
+      for (int dx = -1; dx <= 1; ++dx)
+        if (!has_row_around(x + dx, y + dy)) show(x + dx, y + dy, row);
+  }
+}
+
+// Whether filtering at a chart's rim may read a texel.
+bool Rows::has_row_around(int x, int y) const {
+  const int size = static_cast<int>(size_);
+  for (int j = std::max(y - 1, 0); j <= std::min(y + 1, size - 1); ++j)
+    for (int i = std::max(x - 1, 0); i <= std::min(x + 1, size - 1); ++i)
+      if (at_[static_cast<std::size_t>(j * size + i)].row != no_row) return true;
+  return false;
 }
 
 void Rows::describe(Packet& packet) const {

@@ -41,6 +41,13 @@ class Rows {
   std::uint32_t at(std::uint32_t atlas) const { return at_[atlas].row; }
   std::uint32_t size() const { return size_; }  // of the atlas
 
+  // A texel of the atlas that has no row, but on which a chart without any texel lies, and the row whose light
+  // it shows.
+  struct Shown {
+    std::uint32_t texel, row;
+  };
+  std::span<const Shown> shown_beside() const { return shown_beside_; }
+
   // each(row, dx, dy) for the texels at most `reach` beside one, itself too, where they are from there
   // [texels].
   template <typename Each>
@@ -76,6 +83,8 @@ class Rows {
   std::uint32_t find(const Triangle& triangle, const glm::vec2& barycentric) const;
   void add_fallbacks(const scene::Scene& scene);
   void add_backs(const scene::Scene& scene);
+  void show_fallbacks();
+  bool has_row_around(int x, int y) const;
   void sort(std::size_t bodies, std::uint32_t side);
   void describe(Packet& packet) const;
 
@@ -87,6 +96,7 @@ class Rows {
   std::vector<Packet> packets_;
   std::vector<Range> bodies_, packets_of_body_;
   std::vector<Triangle> triangles_;
+  std::vector<Shown> shown_beside_;
 };
 
 }  // namespace lichtveld::lightfield

@@ -45,6 +45,7 @@ Thesis::Thesis(const gpu::Device& device, const scene::Scene& scene, const Setti
       blend_(device),
       brdf_(device),
       tone_map_(device),
+      over_(device, scene, records_),
       counters_(device, "lightfield/counters", sizeof(shaders::Counters),
                 vk::BufferUsageFlagBits::eStorageBuffer | vk::BufferUsageFlagBits::eTransferDst,
                 gpu::Memory::host) {
@@ -195,6 +196,7 @@ void Thesis::end_bounce(const Solution& solution) {
 
 // tone_map
 Shown Thesis::shown(const Adaptation& adaptation) {
+  over_.put(map_, irradiance_view());
   gpu::Frame frame(device_, {"thesis", "present"});
   if (lamps_) brdf_.record(frame, map_);
   geometry_texture_.find_shown(frame, map_);

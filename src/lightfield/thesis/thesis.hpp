@@ -10,6 +10,7 @@
 #include "lichtveld/lightfield/settings.hpp"
 #include "passes/brdf.hpp"
 #include "passes/geometry_texture.hpp"
+#include "passes/over.hpp"
 #include "passes/tone_map.hpp"
 #include "thesis/blend.hpp"
 #include "thesis/emit_radiance.hpp"
@@ -64,6 +65,7 @@ class Thesis final : public LightField {
   Blend blend_;
   Brdf brdf_;
   ToneMap tone_map_;
+  Over over_;
   gpu::Buffer counters_;
   std::unique_ptr<const scene::RayIndex> index_;  // of lamps_
   std::optional<LampLight> lamps_;                // with Direct::exact

@@ -85,7 +85,7 @@ class LightField {
   const Solution& solution() const { return solution_; }
 
   // Of the light as it was computed last, size * size texels, row 0 on top. rgb: E [W m^-2]; a: 1 on valid
-  // texels, all 0 elsewhere.
+  // texels. Elsewhere a is 0, and rgb too, but where a chart that holds no texel lies and an engine lights it.
   std::vector<glm::vec4> irradiance() const { return irradiance_view().on_host(); }
   virtual TexelView irradiance_view() const = 0;
   // The same as players see it, with an exposure that follows from this one's light and that of the one before.

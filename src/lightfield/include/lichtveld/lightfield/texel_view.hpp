@@ -21,9 +21,7 @@ class TexelView {
 
   std::uint32_t width() const { return width_; }
 
-  // The one place where either becomes the other. The image is as large, and of four 32-bit floats a texel.
   std::vector<glm::vec4> on_host() const;
-  void copy_to(const gpu::Device& device, const gpu::Image& image) const;
 
  private:
   std::span<const glm::vec4> host_ = {};

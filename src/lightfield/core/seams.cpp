@@ -1,0 +1,152 @@
+#include "core/seams.hpp"
+
+#include <Eigen/SparseCholesky>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include "lichtveld/scene/seams.hpp"
+
+namespace lichtveld::lightfield {
+
+namespace {
+
+constexpr float places_a_texel = 2;
+// What a texel's shift weighs against a disagreement: of a step at a seam a hundredth stays.
+constexpr float shift_weight = 0.02f;
+constexpr float least_tap = 1e-3f;
+constexpr float alike_cosine = 0.7f;  // of a texel's face and that of the triangle which is looked up there
+
+struct AtlasTap {
+  std::uint32_t texel;
+  float weight;
+};
+
+// What bilinear filtering reads at a place of a triangle; nothing where that is another surface's texel.
+class Filter {
+ public:
+  Filter(const scene::Scene& scene, const TexelRecords& records)
+      : scene_(scene), records_(records), surfaces_(surface_of_triangles(scene)) {}
+
+  bool add(std::uint32_t triangle, const glm::vec2& at, float sign, std::vector<AtlasTap>& taps) const {
+    const auto size = static_cast<int>(records_.size());
+    const glm::vec2 place = at * static_cast<float>(size) - 0.5f, low = glm::floor(place), share = place - low;
+    const glm::vec3 face = face_of(triangle);
+    for (int corner = 0; corner < 4; ++corner) {
+      const int right = corner & 1, down = corner >> 1;
+      const float weight = (right ? share.x : 1 - share.x) * (down ? share.y : 1 - share.y);
+      if (weight < least_tap) continue;
+      const int x = std::clamp(static_cast<int>(low.x) + right, 0, size - 1),
+                y = std::clamp(static_cast<int>(low.y) + down, 0, size - 1);
+      const auto texel = static_cast<std::uint32_t>(y * size + x), source = records_.source()[texel];
+      if (source == no_record || records_[source].surface != surfaces_[triangle] ||
+          glm::dot(records_[source].face, face) < alike_cosine)
+        return false;
+      taps.push_back({texel, sign * weight});
+    }
+    return true;
+  }
+
+ private:
+  glm::vec3 face_of(std::uint32_t triangle) const {
+    const auto corner = [&](std::size_t k) -> const scene::Vertex& {
+      return scene_.vertices[scene_.indices[std::size_t{3} * triangle + k]];
+    };
+    const scene::Vertex &a = corner(0), &b = corner(1), &c = corner(2);
+    const glm::vec3 cross = glm::cross(b.position - a.position, c.position - a.position);
+    const float length = glm::length(cross);
+    if (length == 0) return a.normal;
+    return glm::dot(cross, a.normal + b.normal + c.normal) < 0 ? -cross / length : cross / length;
+  }
+
+  const scene::Scene& scene_;
+  const TexelRecords& records_;
+  std::vector<std::uint32_t> surfaces_;
+};
+
+float longest(const scene::Seam& seam) {
+  return std::max(glm::distance(seam.sides[0].from, seam.sides[0].to),
+                  glm::distance(seam.sides[1].from, seam.sides[1].to));
+}
+
+}  // namespace
+
+struct Seams::Factored {
+  Eigen::SimplicialLDLT<Eigen::SparseMatrix<float>> matrix;
+};
+
+Seams::Seams(Seams&&) noexcept = default;
+Seams::~Seams() = default;
+
+Seams::Seams(const scene::Scene& scene, const TexelRecords& records) {
+  const Filter filter(scene, records);
+  std::vector<std::uint32_t> variable_of(records.source().size(), no_record);
+  const auto variable = [&](std::uint32_t texel) {
+    if (variable_of[texel] == no_record) {
+      variable_of[texel] = static_cast<std::uint32_t>(variables_.size());
+      const auto& source = records[records.source()[texel]];
+      variables_.push_back({texel, source.atlas, source.albedo / std::numbers::pi_v<float>});
+    }
+    return variable_of[texel];
+  };
+  // Edges far shorter than a texel take turns.
+  float owed = 0;
+  std::vector<AtlasTap> taps;
+  for (const auto& seam : scene::find_seams(scene)) {
+    owed += longest(seam) * static_cast<float>(records.size()) * places_a_texel;
+    const float count = std::floor(owed);
+    owed -= count;
+    for (float place = 0.5f; place < count; ++place) {
+      taps.clear();
+      const auto on = [&](std::size_t side, float sign) {
+        const auto& [triangle, from, to] = seam.sides[side];
+        return filter.add(triangle, glm::mix(from, to, place / count), sign, taps);
+      };
+      if (!on(0, 1) || !on(1, -1)) continue;
+      for (const auto& tap : taps) taps_.push_back({variable(tap.texel), tap.weight});
+      ends_.push_back(static_cast<std::uint32_t>(taps_.size()));
+    }
+  }
+  if (!any()) return;
+  std::vector<Eigen::Triplet<float>> entries;
+  for (std::uint32_t place = 0, first = 0; place < ends_.size(); first = ends_[place++])
+    for (auto i = first; i < ends_[place]; ++i)
+      for (auto j = first; j < ends_[place]; ++j)
+        entries.emplace_back(static_cast<int>(taps_[i].variable), static_cast<int>(taps_[j].variable),
+                             taps_[i].weight * taps_[j].weight);
+  const auto count = static_cast<int>(variables_.size());
+  for (int i = 0; i < count; ++i) entries.emplace_back(i, i, shift_weight);
+  Eigen::SparseMatrix<float> matrix(count, count);
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  auto factored = std::make_unique<Factored>();
+  factored->matrix.compute(matrix);
+  factored_ = std::move(factored);
+}
+
+std::vector<glm::vec4> Seams::offsets(std::span<const glm::vec4> irradiance) const {
+  std::vector<glm::vec4> offsets(irradiance.size(), glm::vec4(0));
+  if (!any()) return offsets;
+  Eigen::MatrixX3f wanted = Eigen::MatrixX3f::Zero(static_cast<Eigen::Index>(variables_.size()), 3);
+  for (std::uint32_t place = 0, first = 0; place < ends_.size(); first = ends_[place++]) {
+    glm::vec3 apart(0);
+    bool lit = true;
+    for (auto i = first; i < ends_[place]; ++i) {
+      const glm::vec3 light(irradiance[variables_[taps_[i].variable].source]);
+      lit = lit && light != glm::vec3(0);
+      apart += taps_[i].weight * light;
+    }
+    if (!lit) continue;
+    for (auto i = first; i < ends_[place]; ++i)
+      for (int channel = 0; channel < 3; ++channel)
+        wanted(taps_[i].variable, channel) -= taps_[i].weight * apart[channel];
+  }
+  const Eigen::MatrixX3f shifts = factored_->matrix.solve(wanted);
+  for (std::size_t i = 0; i < variables_.size(); ++i)
+    for (int channel = 0; channel < 3; ++channel)
+      offsets[variables_[i].texel][channel] =
+          variables_[i].reflected[channel] * shifts(static_cast<Eigen::Index>(i), channel);
+  return offsets;
+}
+
+}  // namespace lichtveld::lightfield
