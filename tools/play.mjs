@@ -167,8 +167,9 @@ function showLinks(secretFile, url) {
 /** The scene as one file that browsers draw, with an atlas for its light map: made where its own cannot be used. */
 function withAtlas(scene, { executable, serveOptions }, folder) {
   const made = join(folder, 'scene.glb');
-  const at = serveOptions.indexOf('--size');
-  const size = at < 0 ? [] : ['--size', serveOptions[at + 1] ?? ''];
+  const size = serveOptions.flatMap((option, at) =>
+    option === '--size' ? [option, serveOptions[at + 1] ?? ''] : option.startsWith('--size=') ? [option] : [],
+  );
   const { status, signal } = spawnSync(executable, ['unwrap', scene, '--out', made, ...size], {
     stdio: ['ignore', 2, 2],
   });

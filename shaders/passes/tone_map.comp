@@ -7,9 +7,10 @@
 layout(local_size_x = SIDE, local_size_y = SIDE) in;
 layout(binding = 0, rgba32f) uniform readonly image2D radiance;
 layout(binding = 1, r32ui) uniform readonly uimage2D shown;  // the texel whose light to show, or NO_TEXEL
-layout(binding = 2, rgba32f) uniform readonly image2D over;  // rgb + (1 - a) of that light
-layout(binding = 3) readonly buffer Exposures { Exposure exposure; };
-layout(binding = 4, rgba8) uniform writeonly image2D presented;  // sRGB-encoded; black outside charts and gutters
+layout(binding = 2, r32ui) uniform readonly uimage2D over;  // the number of a value in overs, from 1 on, or 0
+layout(binding = 3) readonly buffer Overs { vec4 overs[]; };  // rgb + (1 - a) of the light is shown
+layout(binding = 4) readonly buffer Exposures { Exposure exposure; };
+layout(binding = 5, rgba8) uniform writeonly image2D presented;  // sRGB-encoded; black outside charts and gutters
 
 vec3 srgb(vec3 linear) {  // IEC 61966-2-1
   return mix(12.92 * linear, 1.055 * pow(linear, vec3(1.0 / 2.4)) - 0.055, greaterThan(linear, vec3(0.0031308)));
@@ -20,7 +21,8 @@ void main() {
   if (any(greaterThanEqual(texel, imageSize(radiance)))) return;
   const uint from = imageLoad(shown, texel).r, width = uint(imageSize(radiance).x);
   const vec3 light_there = from == NO_TEXEL ? vec3(0.0) : imageLoad(radiance, ivec2(from % width, from / width)).rgb;
-  const vec4 above = imageLoad(over, texel);
+  const uint number = imageLoad(over, texel).r;
+  const vec4 above = number == 0 ? vec4(0.0) : overs[number - 1];
   const vec3 colour = max(above.rgb + (1.0 - above.a) * light_there, 0.0);
   const float light = luminance(colour), scale = KEY / exposure.average;
   const float scaled = light * scale, white_scaled = exposure.white * scale;

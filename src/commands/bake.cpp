@@ -139,7 +139,7 @@ void bake(BakeOptions options) {
   }
   const auto finish = [&](std::vector<glm::vec4>& irradiance) {
     if (buried) buried->take_light_of_neighbours(irradiance);
-    fill_gutters(irradiance, baked.size);
+    fill_gutters(job.scene, baked.size, irradiance);
   };
   finish(baked.irradiance);
   for (auto& light : baked.apart) finish(light.irradiance);

@@ -3,9 +3,15 @@
 #include <algorithm>
 #include <vector>
 
+#include "lichtveld/scene/gutters.hpp"
+
 namespace lichtveld::commands {
 
-void fill_gutters(std::span<glm::vec4> texels, std::uint32_t size) {
+void fill_gutters(const scene::Scene& scene, std::uint32_t size, std::span<glm::vec4> texels) {
+  const auto source = scene::gutter_sources(scene, size, scene::valid_texels(scene, size));
+  for (std::uint32_t i = 0; i < texels.size(); ++i)
+    if (texels[i] == glm::vec4(0) && source[i] != scene::no_texel)
+      texels[i] = glm::vec4(glm::vec3(texels[source[i]]), 0);
   const auto n = static_cast<std::int64_t>(size);
   std::vector<bool> has_value(texels.size());
   std::vector<std::uint32_t> ring;  // texels without one that may get it next
@@ -15,7 +21,8 @@ void fill_gutters(std::span<glm::vec4> texels, std::uint32_t size) {
       for (std::int64_t u = std::max<std::int64_t>(x - 1, 0); u <= std::min(x + 1, n - 1); ++u)
         each(static_cast<std::uint32_t>(v * n + u));
   };
-  for (std::uint32_t i = 0; i < texels.size(); ++i) has_value[i] = texels[i] != glm::vec4(0);
+  for (std::uint32_t i = 0; i < texels.size(); ++i)
+    has_value[i] = texels[i] != glm::vec4(0) || source[i] != scene::no_texel;
   std::vector<bool> is_open(texels.size());
   const auto open_around = [&](std::uint32_t index) {
     for_neighbours(index, [&](std::uint32_t other) {

@@ -73,7 +73,8 @@ std::vector<Seam> find_seams(const Scene& scene) {
       if (const auto other =
               std::find_if(one + 1, end, [&](const HalfEdge& edge) { return meet(scene, *one, edge); });
           other != end)
-        seams.push_back({{side(*one), side(*other)}});
+        seams.push_back(
+            {scene.vertices[one->from].position, scene.vertices[one->to].position, {side(*one), side(*other)}});
     first = end;
   }
   std::ranges::sort(seams, {}, [](const Seam& seam) { return seam.sides[0].triangle; });

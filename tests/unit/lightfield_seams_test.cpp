@@ -87,29 +87,29 @@ TEST(Seams, AreClosedByTheLeastThatCloses) {
   const auto scene = loaded(halves());
   const TexelRecords records(scene, size);
   const Seams seams(scene, records);
-  ASSERT_TRUE(seams.any());
+  ASSERT_FALSE(seams.texels().empty());
   std::mt19937 random(3);
   std::normal_distribution<float> noise(1, 0.05f);
   std::vector<glm::vec4> irradiance(size * size, glm::vec4(0));
   for (const auto& record : records.all())
     irradiance[record.atlas] = glm::vec4(glm::vec3(2 + std::sin(record.position.z)) * noise(random), 1);
+  std::vector<float> before(size * size);
+  for (std::uint32_t texel = 0; texel < before.size(); ++texel)
+    if (const auto source = records.source()[texel]; source != no_record)
+      before[texel] = 0.5f / std::numbers::pi_v<float> * irradiance[records[source].atlas].g;
+  auto after = before;
   const auto offsets = seams.offsets(irradiance);
-  std::vector<float> before(size * size), after(before.size());
-  std::size_t shifted = 0;
+  ASSERT_EQ(offsets.size(), seams.texels().size());
   double most = 0;
-  for (std::uint32_t texel = 0; texel < before.size(); ++texel) {
-    if (records.source()[texel] == no_record) continue;
-    const auto& source = records[records.source()[texel]];
-    before[texel] = 0.5f / std::numbers::pi_v<float> * irradiance[source.atlas].g;
-    after[texel] = before[texel] + offsets[texel].g;
-    shifted += offsets[texel].g != 0;
-    most = std::max<double>(most, std::abs(offsets[texel].g));
-    EXPECT_TRUE(offsets[texel].g == 0 || std::abs(source.position.x) < 0.1f) << source.position.x;
+  for (std::size_t i = 0; i < offsets.size(); ++i) {
+    after[seams.texels()[i]] += offsets[i].g;
+    most = std::max<double>(most, std::abs(offsets[i].g));
+    EXPECT_LT(std::abs(records[records.source()[seams.texels()[i]]].position.x), 0.1f);
   }
   const auto seam = scene::find_seams(scene).at(0);
   EXPECT_GT(apart(seam, before), 0.01);
   EXPECT_LT(apart(seam, after), 0.1 * apart(seam, before));
-  EXPECT_GT(shifted, size / 2);
+  EXPECT_GT(offsets.size(), size / 2);
   EXPECT_LT(most, 4 * apart(seam, before));
   irradiance.assign(irradiance.size(), glm::vec4(1));
   for (const auto& offset : seams.offsets(irradiance)) EXPECT_NEAR(offset.g, 0, 1e-6) << "what agrees stays";
@@ -122,7 +122,7 @@ TEST(Seams, StayWhereSomethingLies) {
   std::vector<glm::vec4> irradiance(size * size, glm::vec4(0));
   for (const auto& record : records.all())
     if (record.position.x > 0) irradiance[record.atlas] = glm::vec4(1);
-  for (const auto& offset : Seams(scene, records).offsets(irradiance)) EXPECT_EQ(offset, glm::vec4(0));
+  for (const auto& offset : Seams(scene, records).offsets(irradiance)) EXPECT_EQ(offset, glm::vec3(0));
 }
 
 using ShownSeams = WithDevice;

@@ -16,20 +16,24 @@ constexpr float places_a_texel = 2;
 // What a texel's shift weighs against a disagreement: of a step at a seam a hundredth stays.
 constexpr float shift_weight = 0.02f;
 constexpr float least_tap = 1e-3f;
-constexpr float alike_cosine = 0.7f;  // of a texel's face and that of the triangle which is looked up there
+// A texel that is read at a seam is there if it is no farther from it [sides] and looks the same way; others
+// are of a chart that happens to lie near in the atlas.
+constexpr float most_apart = 3, alike_cosine = 0.7f;
 
 struct AtlasTap {
   std::uint32_t texel;
   float weight;
 };
 
-// What bilinear filtering reads at a place of a triangle; nothing where that is another surface's texel.
+// What bilinear filtering reads at a place of a triangle.
 class Filter {
  public:
   Filter(const scene::Scene& scene, const TexelRecords& records)
       : scene_(scene), records_(records), surfaces_(surface_of_triangles(scene)) {}
 
-  bool add(std::uint32_t triangle, const glm::vec2& at, float sign, std::vector<AtlasTap>& taps) const {
+  // False where some of it is not there.
+  bool add(std::uint32_t triangle, const glm::vec2& at, const glm::vec3& position, float sign,
+           std::vector<AtlasTap>& taps) const {
     const auto size = static_cast<int>(records_.size());
     const glm::vec2 place = at * static_cast<float>(size) - 0.5f, low = glm::floor(place), share = place - low;
     const glm::vec3 face = face_of(triangle);
@@ -40,15 +44,19 @@ class Filter {
       const int x = std::clamp(static_cast<int>(low.x) + right, 0, size - 1),
                 y = std::clamp(static_cast<int>(low.y) + down, 0, size - 1);
       const auto texel = static_cast<std::uint32_t>(y * size + x), source = records_.source()[texel];
-      if (source == no_record || records_[source].surface != surfaces_[triangle] ||
-          glm::dot(records_[source].face, face) < alike_cosine)
-        return false;
+      if (source == no_record || !is_there(records_[source], triangle, face, position)) return false;
       taps.push_back({texel, sign * weight});
     }
     return true;
   }
 
  private:
+  bool is_there(const TexelRecord& record, std::uint32_t triangle, const glm::vec3& face,
+                const glm::vec3& position) const {
+    return record.surface == surfaces_[triangle] && glm::dot(record.face, face) >= alike_cosine &&
+           glm::distance(record.position, position) <= most_apart * record.side;
+  }
+
   glm::vec3 face_of(std::uint32_t triangle) const {
     const auto corner = [&](std::size_t k) -> const scene::Vertex& {
       return scene_.vertices[scene_.indices[std::size_t{3} * triangle + k]];
@@ -81,14 +89,15 @@ Seams::~Seams() = default;
 
 Seams::Seams(const scene::Scene& scene, const TexelRecords& records) {
   const Filter filter(scene, records);
-  std::vector<std::uint32_t> variable_of(records.source().size(), no_record);
-  const auto variable = [&](std::uint32_t texel) {
-    if (variable_of[texel] == no_record) {
-      variable_of[texel] = static_cast<std::uint32_t>(variables_.size());
+  std::vector<std::uint32_t> numbers(records.source().size(), no_record);
+  const auto number = [&](std::uint32_t texel) {
+    if (numbers[texel] == no_record) {
+      numbers[texel] = static_cast<std::uint32_t>(texels_.size());
+      texels_.push_back(texel);
       const auto& source = records[records.source()[texel]];
-      variables_.push_back({texel, source.atlas, source.albedo / std::numbers::pi_v<float>});
+      shows_.push_back({source.atlas, source.albedo / std::numbers::pi_v<float>});
     }
-    return variable_of[texel];
+    return numbers[texel];
   };
   // Edges far shorter than a texel take turns.
   float owed = 0;
@@ -101,21 +110,22 @@ Seams::Seams(const scene::Scene& scene, const TexelRecords& records) {
       taps.clear();
       const auto on = [&](std::size_t side, float sign) {
         const auto& [triangle, from, to] = seam.sides[side];
-        return filter.add(triangle, glm::mix(from, to, place / count), sign, taps);
+        return filter.add(triangle, glm::mix(from, to, place / count),
+                          glm::mix(seam.from, seam.to, place / count), sign, taps);
       };
       if (!on(0, 1) || !on(1, -1)) continue;
-      for (const auto& tap : taps) taps_.push_back({variable(tap.texel), tap.weight});
+      for (const auto& tap : taps) taps_.push_back({number(tap.texel), tap.weight});
       ends_.push_back(static_cast<std::uint32_t>(taps_.size()));
     }
   }
-  if (!any()) return;
+  if (texels_.empty()) return;
   std::vector<Eigen::Triplet<float>> entries;
   for (std::uint32_t place = 0, first = 0; place < ends_.size(); first = ends_[place++])
     for (auto i = first; i < ends_[place]; ++i)
       for (auto j = first; j < ends_[place]; ++j)
-        entries.emplace_back(static_cast<int>(taps_[i].variable), static_cast<int>(taps_[j].variable),
+        entries.emplace_back(static_cast<int>(taps_[i].texel), static_cast<int>(taps_[j].texel),
                              taps_[i].weight * taps_[j].weight);
-  const auto count = static_cast<int>(variables_.size());
+  const auto count = static_cast<int>(texels_.size());
   for (int i = 0; i < count; ++i) entries.emplace_back(i, i, shift_weight);
   Eigen::SparseMatrix<float> matrix(count, count);
   matrix.setFromTriplets(entries.begin(), entries.end());
@@ -124,28 +134,28 @@ Seams::Seams(const scene::Scene& scene, const TexelRecords& records) {
   factored_ = std::move(factored);
 }
 
-std::vector<glm::vec4> Seams::offsets(std::span<const glm::vec4> irradiance) const {
-  std::vector<glm::vec4> offsets(irradiance.size(), glm::vec4(0));
-  if (!any()) return offsets;
-  Eigen::MatrixX3f wanted = Eigen::MatrixX3f::Zero(static_cast<Eigen::Index>(variables_.size()), 3);
+std::vector<glm::vec3> Seams::offsets(std::span<const glm::vec4> irradiance) const {
+  if (texels_.empty()) return {};
+  Eigen::MatrixX3f wanted = Eigen::MatrixX3f::Zero(static_cast<Eigen::Index>(texels_.size()), 3);
   for (std::uint32_t place = 0, first = 0; place < ends_.size(); first = ends_[place++]) {
     glm::vec3 apart(0);
     bool lit = true;
     for (auto i = first; i < ends_[place]; ++i) {
-      const glm::vec3 light(irradiance[variables_[taps_[i].variable].source]);
+      const glm::vec3 light(irradiance[shows_[taps_[i].texel].texel]);
       lit = lit && light != glm::vec3(0);
       apart += taps_[i].weight * light;
     }
     if (!lit) continue;
     for (auto i = first; i < ends_[place]; ++i)
       for (int channel = 0; channel < 3; ++channel)
-        wanted(taps_[i].variable, channel) -= taps_[i].weight * apart[channel];
+        wanted(taps_[i].texel, channel) -= taps_[i].weight * apart[channel];
   }
   const Eigen::MatrixX3f shifts = factored_->matrix.solve(wanted);
-  for (std::size_t i = 0; i < variables_.size(); ++i)
-    for (int channel = 0; channel < 3; ++channel)
-      offsets[variables_[i].texel][channel] =
-          variables_[i].reflected[channel] * shifts(static_cast<Eigen::Index>(i), channel);
+  std::vector<glm::vec3> offsets;
+  for (std::size_t i = 0; i < texels_.size(); ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    offsets.push_back(shows_[i].reflected * glm::vec3(shifts(row, 0), shifts(row, 1), shifts(row, 2)));
+  }
   return offsets;
 }
 

@@ -19,25 +19,26 @@ class Seams {
   Seams(Seams&&) noexcept;
   ~Seams();
 
-  bool any() const { return !variables_.empty(); }
+  // Those by a seam, of the atlas, gutters too.
+  const std::vector<std::uint32_t>& texels() const { return texels_; }
 
-  // What is added to the radiance that each texel of the atlas shows, gutters too [W m^-2 sr^-1]. `irradiance`:
-  // of the atlas [W m^-2]. Where something lies on a texel by a seam, and it has no light, the seam stays.
-  std::vector<glm::vec4> offsets(std::span<const glm::vec4> irradiance) const;
+  // What is added to the radiance that each of texels() shows [W m^-2 sr^-1]. `irradiance`: of the atlas
+  // [W m^-2]. Where something lies on a texel by a seam, and it has no light, the seam stays.
+  std::vector<glm::vec3> offsets(std::span<const glm::vec4> irradiance) const;
 
  private:
-  struct Variable {        // a texel that may be shifted
-    std::uint32_t texel;   // of the atlas
-    std::uint32_t source;  // the one whose light it shows
-    glm::vec3 reflected;   // albedo / pi there [sr^-1]
+  struct Shows {
+    std::uint32_t texel;  // of the atlas: whose light it is
+    glm::vec3 reflected;  // albedo / pi there [sr^-1]
   };
   struct Tap {
-    std::uint32_t variable;
-    float weight;  // above 0 on one side of the seam, below on the other
+    std::uint32_t texel;  // of texels()
+    float weight;         // above 0 on one side of the seam, below on the other
   };
   struct Factored;
 
-  std::vector<Variable> variables_;
+  std::vector<std::uint32_t> texels_;
+  std::vector<Shows> shows_;  // of each of them
   std::vector<Tap> taps_;
   std::vector<std::uint32_t>
       ends_;  // of each place on a seam where both sides shall agree: its last tap's, + 1

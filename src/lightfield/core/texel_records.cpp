@@ -1,10 +1,11 @@
 #include "core/texel_records.hpp"
 
 #include <algorithm>
+#include <span>
 #include <utility>
 
 #include "core/texel_albedo.hpp"
-#include "lichtveld/scene/atlas.hpp"
+#include "lichtveld/scene/gutters.hpp"
 #include "shared.h"
 
 namespace lichtveld::lightfield {
@@ -66,9 +67,9 @@ void in_blocks(std::uint32_t size, const Each& each) {
       }
 }
 
-std::vector<TexelRecord> records_of(const scene::Scene& scene, std::uint32_t size) {
+std::vector<TexelRecord> records_of(const scene::Scene& scene, std::uint32_t size,
+                                    std::span<const scene::AtlasTexel> texels) {
   const auto surfaces = surface_of_triangles(scene);
-  const auto texels = scene::valid_texels(scene, size);
   const auto emission_of = [&](const scene::AtlasTexel& texel) -> const glm::vec3& {
     return scene.materials[scene.surfaces[surfaces[texel.at.triangle]].material].emission;
   };
@@ -119,23 +120,31 @@ std::uint32_t nearest(const std::vector<std::uint32_t>& own, std::uint32_t size,
   return found;
 }
 
-std::vector<std::uint32_t> sources_of(const std::vector<TexelRecord>& records, std::uint32_t size) {
+// Beside charts what belongs there, farther off the nearest.
+std::vector<std::uint32_t> sources_of(const scene::Scene& scene, std::span<const scene::AtlasTexel> texels,
+                                      const std::vector<TexelRecord>& records, std::uint32_t size) {
   std::vector<std::uint32_t> own(std::size_t{size} * size, no_record);
   for (std::uint32_t number = 0; number < records.size(); ++number) own[records[number].atlas] = number;
-  auto source = own;
-  for (std::uint32_t atlas = 0; atlas < source.size(); ++atlas)
-    if (own[atlas] == no_record)
-      source[atlas] = nearest(own, size, static_cast<int>(atlas % size), static_cast<int>(atlas / size));
+  const auto belongs = scene::gutter_sources(scene, size, texels);
+  std::vector<std::uint32_t> source;
+  for (std::uint32_t atlas = 0; atlas < own.size(); ++atlas)
+    source.push_back(belongs[atlas] != scene::no_texel
+                         ? own[belongs[atlas]]
+                         : nearest(own, size, static_cast<int>(atlas % size), static_cast<int>(atlas / size)));
   return source;
 }
 
 }  // namespace
 
 TexelRecords::TexelRecords(const scene::Scene& scene, std::uint32_t size)
+    : TexelRecords(scene, size, scene::valid_texels(scene, size)) {}
+
+TexelRecords::TexelRecords(const scene::Scene& scene, std::uint32_t size,
+                           std::span<const scene::AtlasTexel> texels)
     : size_(size),
-      records_(records_of(scene, size)),
+      records_(records_of(scene, size, texels)),
       lamps_(lamps_of(records_)),
-      source_(sources_of(records_, size)) {
+      source_(sources_of(scene, texels, records_, size)) {
   for (const auto& record : records_)
     highest_albedo_ = std::max({highest_albedo_, record.albedo.r, record.albedo.g, record.albedo.b});
 }

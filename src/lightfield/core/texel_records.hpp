@@ -4,9 +4,11 @@
 
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "core/lamps.hpp"
+#include "lichtveld/scene/atlas.hpp"
 #include "lichtveld/scene/scene.hpp"
 #include "lichtveld/scene/surface_point.hpp"
 
@@ -51,11 +53,13 @@ class TexelRecords {
   const Lamps& lamps() const { return lamps_; }
   float highest_albedo() const { return highest_albedo_; }  // of all, any channel
 
-  // For each texel of the atlas the record whose light it sends: its own, in a gutter that of its nearest on a
-  // chart, no_record beyond.
+  // For each texel of the atlas the record whose light it sends: its own; beside a chart that of the chart's
+  // place there (scene::gutter_sources); in what else is a gutter that of the nearest, no_record beyond.
   const std::vector<std::uint32_t>& source() const { return source_; }
 
  private:
+  TexelRecords(const scene::Scene& scene, std::uint32_t size, std::span<const scene::AtlasTexel> texels);
+
   std::uint32_t size_;
   std::vector<TexelRecord> records_;
   Lamps lamps_;

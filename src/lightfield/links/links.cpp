@@ -88,11 +88,11 @@ bool Links::converge(Light before, const Enough& enough, Solution& solution) {
 }
 
 Shown Links::shown(const Adaptation& adaptation) {
-  over_.put(links_.map(), irradiance_view());
+  over_.put(irradiance_view());
   gpu::Frame frame(device_, {"links", "present"});
   brdf_.record(frame, links_.map());
   links_.find_shown(frame);
-  tone_map_.record(frame, links_.map(), adaptation);
+  tone_map_.record(frame, links_.map(), over_, adaptation);
   frame.submit_and_wait();
   return tone_map_.shown(links_.map());
 }

@@ -50,13 +50,11 @@ LightMap::LightMap(const gpu::Device& device, const TexelRecords& records)
       total_irradiance(atlas_image(device, "total_irradiance", size, rgba32f)),
       half_difference(atlas_image(device, "half_difference", size, rgba32f)),
       radiance(atlas_image(device, "radiance", size, rgba32f, Usage::eSampled)),
-      over(atlas_image(device, "over", size, rgba32f)),
       presented(atlas_image(device, "presented", size, vk::Format::eR8G8B8A8Unorm)) {
   gpu::fill<std::uint32_t>(device, source, atlas_sources(records));
   std::vector<glm::vec4> reflected(std::size_t{size} * size, glm::vec4(0));
   for (const auto& record : records.all()) reflected[record.atlas] = glm::vec4(record.albedo, 1);
   gpu::fill<glm::vec4>(device, albedo, reflected);
-  gpu::fill<glm::vec4>(device, over, std::vector<glm::vec4>(reflected.size(), glm::vec4(0)));
 }
 
 void put_emission(const gpu::Device& device, const LightMap& map, const scene::Scene& scene,

@@ -13,7 +13,7 @@ namespace lichtveld::lightfield {
 
 // All size * size, linear RGB, 32-bit float. Zero outside the charts where not said otherwise.
 struct LightMap {
-  // With `source` and `albedo` filled in, `over` all 0, and nothing else.
+  // With `source` and `albedo` filled in, and nothing else.
   LightMap(const gpu::Device& device, const TexelRecords& records);
 
   std::uint32_t size;
@@ -31,7 +31,6 @@ struct LightMap {
   gpu::Image total_irradiance;  // rgb: E [W m^-2]; a: 1 on valid texels
   gpu::Image half_difference;   // rgb: by how much each half of the directions differs from E [W m^-2], signed
   gpu::Image radiance;          // rgb: L [W m^-2 sr^-1], gutters too; a: 1 on charts and gutters
-  gpu::Image over;              // rgb, a: what is shown is rgb + (1 - a) L; 0 where nothing differs
   gpu::Image presented;         // sRGB RGBA8: tone-mapped
 };
 

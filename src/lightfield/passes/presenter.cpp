@@ -34,12 +34,12 @@ void Presenter::dim(const scene::Scales& scales) {
 Shown Presenter::show(std::span<const glm::vec4> irradiance, const Adaptation& adaptation,
                       std::span<const float> covered, std::span<const Over::Instead> instead) {
   gpu::fill<glm::vec4>(device_, map_.total_irradiance, irradiance);
-  over_.put(map_, {irradiance, map_.size}, instead);
+  over_.put({irradiance, map_.size}, instead);
   if (!covered.empty()) gpu::fill<float>(device_, map_.cover, covered);
   gpu::Frame frame(device_, {"present"});
   geometry_texture_.find_shown(frame, map_);
   brdf_.record(frame, map_);
-  tone_map_.record(frame, map_, adaptation);
+  tone_map_.record(frame, map_, over_, adaptation);
   frame.submit_and_wait();
   return tone_map_.shown(map_);
 }

@@ -21,7 +21,8 @@ ToneMap::ToneMap(const gpu::Device& device)
   exposure_.as<shaders::Exposure>().front() = {};
 }
 
-void ToneMap::record(gpu::Frame& frame, const LightMap& map, const Adaptation& adaptation) const {
+void ToneMap::record(gpu::Frame& frame, const LightMap& map, const Over& over,
+                     const Adaptation& adaptation) const {
   frame.clear("tone_map", histogram_);
   frame.compute(count_,
                 {gpu::reads("radiance", map.radiance), gpu::reads("position", map.position),
@@ -32,11 +33,11 @@ void ToneMap::record(gpu::Frame& frame, const LightMap& map, const Adaptation& a
                                            .brighter = adaptation.brighter,
                                            .darker = adaptation.darker},
                 1, 1);
-  frame.compute(
-      map_,
-      {gpu::reads("radiance", map.radiance), gpu::reads("shown", map.shown), gpu::reads("over", map.over),
-       gpu::reads("Exposures", exposure_), gpu::writes("presented", map.presented)},
-      map.workgroups, map.workgroups);
+  frame.compute(map_,
+                {gpu::reads("radiance", map.radiance), gpu::reads("shown", map.shown),
+                 gpu::reads("over", over.numbers()), gpu::reads("Overs", over.values()),
+                 gpu::reads("Exposures", exposure_), gpu::writes("presented", map.presented)},
+                map.workgroups, map.workgroups);
   frame.to_host(exposure_);
 }
 

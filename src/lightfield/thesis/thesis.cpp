@@ -196,11 +196,11 @@ void Thesis::end_bounce(const Solution& solution) {
 
 // tone_map
 Shown Thesis::shown(const Adaptation& adaptation) {
-  over_.put(map_, irradiance_view());
+  over_.put(irradiance_view());
   gpu::Frame frame(device_, {"thesis", "present"});
   if (lamps_) brdf_.record(frame, map_);
   geometry_texture_.find_shown(frame, map_);
-  tone_map_.record(frame, map_, adaptation);
+  tone_map_.record(frame, map_, over_, adaptation);
   frame.submit_and_wait();
   return tone_map_.shown(map_);
 }

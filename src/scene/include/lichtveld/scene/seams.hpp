@@ -17,6 +17,7 @@ struct Seam {
     std::uint32_t triangle;  // of Scene::indices
     glm::vec2 from, to;      // in the atlas; `from` is the same end of both sides
   };
+  glm::vec3 from, to;  // bodies at rest [m]
   std::array<Side, 2> sides;
 };
 
