@@ -93,7 +93,7 @@ lightfield::LightField::StageObserver dump_into(const std::filesystem::path& fol
 // The quickest light map that is exact enough; says what to expect of it.
 void choose_quality(const BakeOptions& options, const lightfield::Engine& engine, const gpu::Device& device,
                     const scene::Scene& scene, lightfield::Settings& settings) {
-  const lightfield::Forecast forecast(engine, device, scene, settings, options.fixed, [] { return false; });
+  lightfield::Forecast forecast(engine, device, scene, settings, options.fixed, [] { return false; });
   const auto expected = forecast.quickest_for(*options.error);
   settings.size = expected.quality.size;
   settings.psf = expected.quality.psf;

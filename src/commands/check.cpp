@@ -73,7 +73,7 @@ Outlook outlook_of(const scene::Checked& checked, const CheckOptions& options) {
     const auto& engine = engine_of(method, device, checked.scene, settings);
     outlook.method = engine.name;
     const auto end = std::chrono::steady_clock::now() + time_for_trials;
-    const lightfield::Forecast forecast(engine, device, checked.scene, settings,
+    lightfield::Forecast forecast(engine, device, checked.scene, settings,
                                         {.size = settings.size, .psf = settings.psf},
                                         [&] { return std::chrono::steady_clock::now() > end; });
     outlook.expected = forecast.of({settings.size, settings.psf});

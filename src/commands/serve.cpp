@@ -162,9 +162,11 @@ void update_room(std::optional<gpu::Capture>& capture, const std::function<void(
   }
 }
 
-// The finest light maps that this machine renews often enough; says what to expect of them.
-void choose_quality(ServeOptions& options, const lightfield::Engine& engine, const gpu::Device& device,
-                    const scene::Scene& scene, const std::function<bool()>& stopped) {
+// The finest light maps that this machine renews often enough; says what to expect of them. The light field of
+// that quality, if the last trial made it.
+std::unique_ptr<lightfield::LightField> choose_quality(ServeOptions& options, const lightfield::Engine& engine,
+                                                       const gpu::Device& device, const scene::Scene& scene,
+                                                       const std::function<bool()>& stopped) {
   lightfield::Forecast forecast(engine, device, scene, options.settings, *options.to_choose, stopped);
   const auto finest_at = [&](double rate) {
     return forecast.finest_within(
@@ -181,6 +183,7 @@ void choose_quality(ServeOptions& options, const lightfield::Engine& engine, con
     spdlog::warn(
         "light maps {:.0f} % off show blotches: a lower --rate, a larger lamp or a faster machine would help",
         100 * expected.error);
+  return forecast.take(expected.quality);
 }
 
 void serve(ServeOptions options) {
@@ -206,13 +209,16 @@ void serve(ServeOptions options) {
   auto capture = make_capture(options.capture, 0);
   const gpu::Device device(options.device);
   const auto& engine = engine_of(options.method, device, scene, options.settings);
-  if (options.to_choose) choose_quality(options, engine, device, scene, [&] { return stop.stop_requested(); });
+  std::unique_ptr<lightfield::LightField> light;
+  if (options.to_choose)
+    light = choose_quality(options, engine, device, scene, [&] { return stop.stop_requested(); });
   scene::check_atlas(scene, options.settings.size);
+  if (!light) light = engine.make(device, scene, options.settings);
 
   const auto rest = room::places_at_rest(scene, cubes_of_players);
   const glm::vec3 sky = scene.sky ? scene::mean_radiance(*scene.sky) : glm::vec3(0);
   std::unique_ptr<stream::Server> server;
-  room::Room room(scene, engine.make(device, scene, options.settings),
+  room::Room room(scene, std::move(light),
                   {.rate = options.rate,
                    .eye = options.eye,
                    .scales = scales,

@@ -20,9 +20,14 @@ namespace {
 
 using Milliseconds = std::chrono::duration<double, std::milli>;
 
-// Trials: each of these sizes with each of these numbers of directions, cheapest first.
+// Trials, cheapest first: one is had with more directions, and that with more texels.
 constexpr std::array sizes_tried = {128u, 256u};
 constexpr std::array directions_tried = {24u, 96u};
+constexpr std::array<Quality, 3> trials_made = {{{sizes_tried[0], directions_tried[0]},
+                                                 {sizes_tried[0], directions_tried[1]},
+                                                 {sizes_tried[1], directions_tried[1]}}};
+// Drivers compile on the first use.
+constexpr Quality warm_up{64, 8};
 // The next trial, which costs up to four times as much, is left out after one that took so long.
 constexpr Milliseconds long_trial(1500);
 // To choose from.
@@ -90,7 +95,7 @@ struct Forecast::Trial {
 
 double Forecast::Cost::at(const Quality& quality) const {
   const double texels = double{1} * quality.size * quality.size;
-  return constant + of_texels * texels + of_directions * quality.psf + of_links * texels * quality.psf;
+  return constant + of_texels * texels + of_links * texels * quality.psf;
 }
 
 Forecast::Forecast(const Engine& engine, const gpu::Device& device, const scene::Scene& scene,
@@ -109,7 +114,7 @@ Forecast::Forecast(const Engine& engine, const gpu::Device& device, const scene:
     return fitting.contains(choice.size) && !fitting[choice.size];
   };
   if (!std::ranges::all_of(choices_, overlaps)) std::erase_if(choices_, overlaps);
-  try_out({sizes_tried[0], directions_tried[0]});  // drivers compile on the first use
+  if (!stopped_()) try_out(warm_up);
   auto trials = try_all();
   if (trials.empty())
     trials.push_back({.quality = {1, 1}, .first_ms = 0, .step_ms = 0, .error = 0, .irradiance = {}});
@@ -123,38 +128,38 @@ Forecast::Forecast(const Engine& engine, const gpu::Device& device, const scene:
                                std::log(double{directions_tried[1]} / directions_tried[0]),
                            0.5, 1.0);
   error_of_texels_ = usual_error_of_texels;
-  if (trials.size() == 4) {
+  if (trials.size() == trials_made.size()) {
     // Both maps' directions are off by chance, too.
-    const double apart = error_between(trials[1].irradiance, trials[3].irradiance, sizes_tried[0]);
-    const double chance = trials[1].error * trials[1].error + trials[3].error * trials[3].error;
+    const double apart = error_between(trials[1].irradiance, trials[2].irradiance, sizes_tried[0]);
+    const double chance = trials[1].error * trials[1].error + trials[2].error * trials[2].error;
     error_of_texels_ = std::sqrt(std::max(apart * apart - chance, apart * apart / 16));
   }
 }
 
 // Cheapest first, as far as they go.
-std::vector<Forecast::Trial> Forecast::try_all() const {
-  progress::Work work("trials", std::size(sizes_tried) * std::size(directions_tried));
+std::vector<Forecast::Trial> Forecast::try_all() {
+  progress::Work work("trials", trials_made.size());
   std::vector<Trial> trials;
-  for (const auto size : sizes_tried)
-    for (const auto psf : directions_tried) {
-      if (stopped_() || (!trials.empty() && trials.back().first_ms > long_trial.count())) return trials;
-      try {
-        trials.push_back(try_out({size, psf}));
-        work.done();
-      } catch (const std::runtime_error&) {  // larger ones do not fit either
-        return trials;
-      }
+  for (const auto& quality : trials_made) {
+    if (stopped_() || (!trials.empty() && trials.back().first_ms > long_trial.count())) break;
+    try {
+      trials.push_back(try_out(quality));
+      work.done();
+    } catch (const std::runtime_error&) {  // larger ones do not fit either
+      break;
     }
+  }
   return trials;
 }
 
-Forecast::Trial Forecast::try_out(const Quality& quality) const {
+Forecast::Trial Forecast::try_out(const Quality& quality) {
+  light_.reset();  // before another one takes memory
   Settings settings = settings_;
   settings.size = quality.size;
   settings.psf = quality.psf;
   auto start = std::chrono::steady_clock::now();
   const auto took = [&] { return Milliseconds(std::chrono::steady_clock::now() - start).count(); };
-  const auto light = engine_.make(device_, scene_, settings);
+  auto light = engine_.make(device_, scene_, settings);
   scene::Offsets offsets(scene_.bodies.size(), glm::vec3(0));
   const double error = light->settle().error_estimate;
   Trial trial{
@@ -170,28 +175,26 @@ Forecast::Trial Forecast::try_out(const Quality& quality) const {
     light->shown();
     trial.step_ms = way > 1 ? std::min(trial.step_ms, took()) : took();
   }
+  light_ = std::move(light);
+  light_quality_ = quality;
+  light_step_ms_ = trial.step_ms;
   return trial;
 }
 
-// From four trials, the first of which alone may have been made, or the first two or three.
+// From trials_made, of which the first alone may have been made, or the first two.
 Forecast::Cost Forecast::fit(std::span<const Trial> trials, double Trial::*time) {
   const Quality& least = trials[0].quality;
   const double texels = double{1} * least.size * least.size, a = trials[0].*time;
   if (trials.size() == 1) return {.of_links = a / (texels * least.psf)};
-  const double more_directions = directions_tried[1] - directions_tried[0], b = trials[1].*time;
-  const double by_direction = std::max(b - a, 0.0) / more_directions;
-  if (trials.size() < 4)
-    return {.of_texels = (a - by_direction * least.psf) / texels, .of_links = by_direction / texels};
+  const double b = trials[1].*time, more_directions = directions_tried[1] - directions_tried[0];
+  Cost cost{.of_links = std::max(b - a, 0.0) / (more_directions * texels)};
+  if (trials.size() == 2) {
+    cost.of_texels = std::max(a / texels - cost.of_links * least.psf, 0.0);
+    return cost;
+  }
   const double more_texels = double{1} * sizes_tried[1] * sizes_tried[1] - texels;
-  const double c = trials[2].*time, d = trials[3].*time;
-  Cost cost;
-  cost.of_links = std::max(((d - c) - (b - a)) / (more_directions * more_texels), 0.0);
-  cost.of_directions = std::max(by_direction - cost.of_links * texels, 0.0);
-  cost.of_texels = std::max((c - a) / more_texels - cost.of_links * least.psf, 0.0);
-  cost.constant =
-      std::max(d - cost.of_texels * (texels + more_texels) -
-                   (cost.of_directions + cost.of_links * (texels + more_texels)) * directions_tried[1],
-               0.0);
+  cost.of_texels = std::max((trials[2].*time - b) / more_texels - cost.of_links * directions_tried[1], 0.0);
+  cost.constant = std::max(b - cost.at(trials[1].quality), 0.0);
   return cost;
 }
 
@@ -213,7 +216,7 @@ std::vector<Expectation> Forecast::all() const {
   return all;
 }
 
-Expectation Forecast::finest_within(std::chrono::milliseconds step) const {
+Expectation Forecast::finest_within(std::chrono::milliseconds step) {
   auto expected = all();
   const double budget = static_cast<double>(step.count());
   const auto in_time = [&](const Expectation& some) {
@@ -228,7 +231,7 @@ Expectation Forecast::finest_within(std::chrono::milliseconds step) const {
     if (stopped_() || std::ranges::find(tried, found->quality) != tried.end()) return *found;
     tried.push_back(found->quality);
     try {
-      const double took = try_out(found->quality).step_ms, off = took / found->step_ms;
+      const double took = step_tried(found->quality), off = took / found->step_ms;
       if (took > budget * allowed_excess)
         for (auto& some : expected)
           if (std::ranges::find(tried, some.quality) == tried.end()) some.step_ms *= off;
@@ -241,7 +244,18 @@ Expectation Forecast::finest_within(std::chrono::milliseconds step) const {
   }
 }
 
-Expectation Forecast::quickest_for(double error) const {
+// As the light that was made last took, or by another trial.
+double Forecast::step_tried(const Quality& quality) {
+  if (!light_ || light_quality_ != quality) try_out(quality);
+  return light_step_ms_;
+}
+
+std::unique_ptr<LightField> Forecast::take(const Quality& quality) {
+  return light_ && light_quality_ == quality ? std::move(light_) : nullptr;
+}
+
+Expectation Forecast::quickest_for(double error) {
+  light_.reset();
   for (auto expected = all();;) {
     // The least error comes first.
     auto best = expected.begin();
@@ -277,7 +291,7 @@ const Engine& tried(std::span<const Engine* const> engines, const gpu::Device& d
     if (engines.size() > 1 && engine == &lightfield::engines().front()) continue;  // renders all at each step
     const auto expected = [&]() -> std::optional<Expectation> {
       try {
-        const Forecast forecast(*engine, device, scene, settings, {}, [] { return false; });
+        Forecast forecast(*engine, device, scene, settings, {}, [] { return false; });
         return forecast.of({settings.size, engine->psf});
       } catch (const std::runtime_error& error) {
         spdlog::info("not --method {}: {}", engine->name, error.what());

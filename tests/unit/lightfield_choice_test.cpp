@@ -35,7 +35,7 @@ TEST_F(Choice, ATrialFindsTheBetterOne) {
 }
 
 TEST_F(Choice, MoreTimeBuysLessError) {
-  const Forecast forecast(rays_, device(), scene_, {.memory = 200 << 20}, {}, never);
+  Forecast forecast(rays_, device(), scene_, {.memory = 200 << 20}, {}, never);
   const auto coarse = forecast.of({64, 24}), fine = forecast.of({512, 384});
   EXPECT_LT(fine.error, coarse.error / 2);
   EXPECT_GT(fine.step_ms, 4 * coarse.step_ms);
@@ -49,7 +49,7 @@ TEST_F(Choice, MoreTimeBuysLessError) {
 TEST_F(Choice, WhatDoesNotFitIsNotChosen) {
   constexpr std::uint64_t memory = 40 << 20;
   const Settings settings{.memory = memory};
-  const Forecast forecast(rays_, device(), scene_, settings, {}, never);
+  Forecast forecast(rays_, device(), scene_, settings, {}, never);
   for (const auto& chosen : {forecast.quickest_for(1e-9), forecast.finest_within(10s)}) {
     EXPECT_GT(chosen.quality.size * chosen.quality.size * chosen.quality.psf, 128u * 128 * 24);
     EXPECT_NO_THROW(rays_.make(device(), scene_,
@@ -68,7 +68,7 @@ TEST_F(Choice, WhatIsFixedStays) {
 
 // What it says is about what comes: errors within twice, for a rough judgement is all that is needed.
 TEST_F(Choice, TheErrorIsAboutWhatIsExpected) {
-  const Forecast forecast(rays_, device(), scene_, {}, {}, never);
+  Forecast forecast(rays_, device(), scene_, {}, {}, never);
   const auto expected = forecast.of({64, 24});
   const auto map_of = [&](const Quality& quality) {
     const auto light = rays_.make(device(), scene_, {.size = quality.size, .psf = quality.psf});

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 
@@ -37,7 +38,7 @@ struct Expectation {
 };
 
 // What an engine's light maps of a scene cost and how far off they are, from trials of a few small ones on this
-// device. Time is taken for a + b size^2 + c psf + d size^2 psf; the squares of errors add up: of the
+// device. Time is taken for a + b size^2 + c size^2 psf; the squares of errors add up: of the
 // directions, by Solution::error_estimate, and of the texels, by what a map says of a finer one's.
 class Forecast {
  public:
@@ -53,21 +54,26 @@ class Forecast {
 
   // The least error of all whose step takes at most so long; the quickest one if none does. Is tried before it
   // is taken, for its true time.
-  Expectation finest_within(std::chrono::milliseconds step) const;
+  Expectation finest_within(std::chrono::milliseconds step);
   // The quickest first map whose error is at most that; the least error if none is so exact. What does not fit
   // into memory is left out, here and above; throws as Engine::make if nothing fits.
-  Expectation quickest_for(double error) const;
+  Expectation quickest_for(double error);
+
+  // The light field of that quality if it was the last to be tried, so that none has to be made again: its
+  // light is known where the trial ended. Else none.
+  std::unique_ptr<LightField> take(const Quality& quality);
 
  private:
   struct Trial;
   struct Cost {
-    double constant = 0, of_texels = 0, of_directions = 0, of_links = 0;  // [ms]
+    double constant = 0, of_texels = 0, of_links = 0;  // [ms]
     double at(const Quality& quality) const;
   };
 
   std::vector<Expectation> all() const;  // to choose from, the least error first
-  Trial try_out(const Quality& quality) const;
-  std::vector<Trial> try_all() const;
+  Trial try_out(const Quality& quality);
+  std::vector<Trial> try_all();
+  double step_tried(const Quality& quality);
   static Cost fit(std::span<const Trial> trials, double Trial::*time);
 
   const Engine& engine_;
@@ -77,9 +83,12 @@ class Forecast {
   const std::function<bool()> stopped_;
   std::vector<Quality> choices_;
   Cost first_, step_;
-  double error_of_directions_ = 0;  // at directions_tried_
-  double falls_by_ = 0.5;           // its power of their number
-  double error_of_texels_ = 0;      // at size_tried_
+  double error_of_directions_ = 0;     // at directions_tried_
+  double falls_by_ = 0.5;              // its power of their number
+  double error_of_texels_ = 0;         // at size_tried_
+  std::unique_ptr<LightField> light_;  // of the last trial
+  Quality light_quality_ = {};
+  double light_step_ms_ = 0;
 };
 
 }  // namespace lichtveld::lightfield
