@@ -378,6 +378,15 @@ TEST(SceneUnwrap, TexturesKeepTheirCoordinates) {
   expect_good_atlas(scene);
 }
 
+TEST(SceneUnwrap, HiddenNodesTakeNoRoom) {
+  auto builder = room();
+  builder.gltf["nodes"][1]["extensions"]["KHR_node_visibility"]["visible"] = false;
+  LogCapture log;
+  const Scene scene = Case(builder).loaded();
+  EXPECT_THAT(log.take(), HasSubstr("unwrapped into 7 charts"));
+  expect_good_atlas(scene);
+}
+
 TEST(SceneUnwrap, ANodeAsksForMoreTexels) {
   auto builder = room();
   builder.gltf["nodes"][1]["extras"]["texels"] = 3;
