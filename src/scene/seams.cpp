@@ -13,7 +13,8 @@ namespace {
 constexpr float same_place = 2e-5f;
 // NORMALs that are turned against each other by more, 8 degrees, are a crease.
 constexpr float smooth_cosine = 0.99f;
-constexpr float same_coordinates = 1e-6f;  // of the atlas
+constexpr float same_coordinates = 1e-6f;       // of the atlas
+constexpr std::ptrdiff_t most_on_an_edge = 16;  // triangles that are looked at for one that goes on
 
 struct HalfEdge {
   std::uint64_t ends;  // numbers of the places, the lower one in front; with `body` what it is known by
@@ -69,12 +70,14 @@ std::vector<Seam> find_seams(const Scene& scene) {
     const auto end =
         std::find_if(first, edges.end(), [&](const HalfEdge& edge) { return edge.key() != first->key(); });
     // Each with the next one that goes on from it, so that many on one edge are no square of them.
-    for (auto one = first; one != end; ++one)
-      if (const auto other =
-              std::find_if(one + 1, end, [&](const HalfEdge& edge) { return meet(scene, *one, edge); });
-          other != end)
-        seams.push_back(
-            {scene.vertices[one->from].position, scene.vertices[one->to].position, {side(*one), side(*other)}});
+    for (auto one = first; one != end; ++one) {
+      const auto last = end - one > most_on_an_edge ? one + most_on_an_edge : end;
+      const auto other =
+          std::find_if(one + 1, last, [&](const HalfEdge& edge) { return meet(scene, *one, edge); });
+      if (other == last) continue;
+      seams.push_back(
+          {scene.vertices[one->from].position, scene.vertices[one->to].position, {side(*one), side(*other)}});
+    }
     first = end;
   }
   std::ranges::sort(seams, {}, [](const Seam& seam) { return seam.sides[0].triangle; });

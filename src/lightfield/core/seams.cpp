@@ -13,6 +13,8 @@ namespace lichtveld::lightfield {
 namespace {
 
 constexpr float places_a_texel = 2;
+// No more places than so many for each texel of the atlas: charts that lie on each other can have any number.
+constexpr std::size_t most_places = 8;
 // What a texel's shift weighs against a disagreement: of a step at a seam a hundredth stays.
 constexpr float shift_weight = 0.02f;
 constexpr float least_tap = 1e-3f;
@@ -106,6 +108,7 @@ Seams::Seams(const scene::Scene& scene, const TexelRecords& records) {
     owed += longest(seam) * static_cast<float>(records.size()) * places_a_texel;
     const float count = std::floor(owed);
     owed -= count;
+    if (ends_.size() > most_places * records.source().size()) break;
     for (float place = 0.5f; place < count; ++place) {
       taps.clear();
       const auto on = [&](std::size_t side, float sign) {

@@ -220,9 +220,10 @@ void Rows::show_fallbacks() {
     const float longest = std::max({glm::length(u), glm::length(v), glm::length(v - u)});
     const float steps =
         std::clamp(std::ceil(longest * touches_a_texel), 1.0f, touches_a_texel * static_cast<float>(size_));
-    for (float i = 0; i < steps; ++i)
-      for (float j = 0; i + j < steps; ++j) {
-        const glm::ivec2 cell(glm::floor(origin + ((i + 1.0f / 3) * u + (j + 1.0f / 3) * v) / steps));
+    // Its inside is narrower than a texel.
+    for (const auto& [from, along] : {std::pair{origin, u}, {origin, v}, {origin + u, v - u}})
+      for (float step = 0.5f; step < steps; ++step) {
+        const glm::ivec2 cell(glm::floor(from + step / steps * along));
         show(cell.x, cell.y, fallback);
       }
   }
