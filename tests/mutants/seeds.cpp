@@ -259,12 +259,24 @@ Parts partly_hidden() {
   return as_glb(builder);
 }
 
-// Some without TEXCOORD_1, a double-sided one among them.
+// Some without TEXCOORD_1, a double-sided one among them. What no scene shows is carried into the file that is
+// written: a mesh, an animation, a skin, a picture.
 Parts to_unwrap() {
-  SceneBuilder builder = sound();
+  SceneBuilder builder = skinned();
+  builder.node(0).erase("skin");
   furnish(builder);
   builder.gltf["materials"][0]["doubleSided"] = true;
-  for (const int node : {0, 3}) builder.primitive(node)["attributes"].erase("TEXCOORD_1");
+  for (const int node : {0, 4}) builder.primitive(node)["attributes"].erase("TEXCOORD_1");
+  builder.gltf["nodes"].push_back({{"name", "unseen"}, {"mesh", 2}, {"skin", 0}});
+  builder.quad("unseen too", {glm::vec3{-1, 3, 1}, {1, 3, 1}, {1, 3, -1}, {-1, 3, -1}}, {0, 0, 1, 1}, 0);
+  builder.gltf["scenes"][0]["nodes"].erase(builder.gltf["scenes"][0]["nodes"].size() - 1);
+  const int times = builder.accessor(std::vector<float>{0, 1}, 5126, "SCALAR"),
+            places = vectors(builder, {{0, 0, 0}, {0, 0, 0}});
+  accessor_json(builder, places).erase("bufferView");
+  builder.gltf["animations"] = {
+      {{"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "translation"}}}}}},
+       {"samplers", {{{"input", times}, {"output", places}}}}}};
+  builder.gltf["images"] = {image_of(builder, text_of(png))};
   return as_glb(builder);
 }
 
