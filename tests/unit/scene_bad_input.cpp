@@ -38,6 +38,7 @@ const std::vector<SpoiltCase> spoilt_cases = {
     {"LightOutside", with_light({{"type", "point"}}, 1), "node \"floor\": light: there is no light 1"},
     {"LightOfNoKind", with_light({{"type", "disco"}}), "no light of type \"disco\""},
     {"LightNegative", with_light({{"type", "point"}, {"intensity", -1}}), "intensity is -1"},
+    {"LightHuge", with_light({{"type", "point"}, {"intensity", 1e300}}), "it must be at most 1e12"},
     {"LightColour", with_light({{"type", "point"}, {"color", {1, -2, 1}}}), "color is -2"},
     {"LightRange", with_light({{"type", "point"}, {"range", -1}}), "range is -1"},
     {"SpotInsideOut",
