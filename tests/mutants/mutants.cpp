@@ -26,7 +26,7 @@ struct Options {
   std::uint64_t count = 10'000, first = 0;
   std::string seed_file;
   std::string keep;             // a folder for the files of mutants with faults
-  unsigned limit = 10;          // seconds a mutant
+  unsigned limit = 30;          // seconds a mutant
   std::uint64_t memory = 1536;  // MiB that a mutant may take at once
   bool show = false;
 };
@@ -91,7 +91,7 @@ class Run {
     const auto start = Clock::now();
     watchdog_.begin(name);
     auto verdict = examine(mutant, folder_.path(), device_,
-                           {.trial = number % 16 == 0, .shown = number % 8 == 0, .unwrapped = number % 2 == 0},
+                           {.trial = number % 64 == 0, .shown = number % 16 == 0, .unwrapped = number % 2 == 0},
                            &Watchdog::doing);
     watchdog_.end();
     const double took = std::chrono::duration<double>(Clock::now() - start).count();

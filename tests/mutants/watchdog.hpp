@@ -1,6 +1,8 @@
 // Names the mutant with which a process ends: in a crash, at a sanitizer's finding, or past its time.
 #pragma once
 
+#include <pthread.h>
+
 #include <chrono>
 #include <condition_variable>
 #include <mutex>
@@ -11,7 +13,8 @@ namespace lichtveld::mutants {
 
 class Watchdog {
  public:
-  // Aborts where a mutant takes longer than `limit`. One at a time.
+  // Of the thread that makes it, which it ends by SIGABRT where a mutant takes longer than `limit`. One at a
+  // time.
   explicit Watchdog(std::chrono::seconds limit);
   ~Watchdog();
   Watchdog(const Watchdog&) = delete;
@@ -30,6 +33,7 @@ class Watchdog {
   std::condition_variable changed_;
   bool busy_ = false, over_ = false;
   std::size_t begun_ = 0;
+  const pthread_t watched_;
   std::thread thread_;
 };
 
