@@ -50,14 +50,18 @@ SharedTexels shared_texels(const Scene& scene, std::uint32_t size) {
   SharedTexels shared{.pairs = {}, .texels = 0, .at = std::vector<bool>(owners.size())};
   // Enough to describe the damage; a hostile file could stack millions of charts on each other.
   constexpr std::uint64_t enough = 1 << 20;
+  const std::uint64_t most_looks = 64 * owners.size();
+  std::uint64_t looks = 0;
+  const auto may_go_on = [&] { return shared.texels < enough && looks < most_looks; };
 
-  for (std::uint32_t s = 0; s < scene.surfaces.size() && shared.texels < enough; ++s) {
+  for (std::uint32_t s = 0; s < scene.surfaces.size() && may_go_on(); ++s) {
     const Surface& surface = scene.surfaces[s];
-    for (std::uint32_t t = 0; t < surface.index_count && shared.texels < enough; t += 3) {
+    for (std::uint32_t t = 0; t < surface.index_count && may_go_on(); t += 3) {
       const std::uint32_t number = (surface.first_index + t) / 3;
       const auto triangle = FlatTriangle::of(chart_of(scene, number, size));
       if (!triangle) continue;
       triangle->for_cells(margin, size, [&](std::int64_t i, std::int64_t j) {
+        ++looks;
         const auto texel = static_cast<std::size_t>(j * size + i);
         Owner& owner = owners[texel];
         if (owner.triangle != none &&

@@ -49,6 +49,27 @@ inline std::pair<std::int64_t, std::int64_t> centres_between(std::int64_t low, s
   return {begin, std::clamp<std::int64_t>(high / subtexels + 1, begin, size)};
 }
 
+// Of these columns those in which a triangle that runs clockwise can hold a centre of the row at `y`, as
+// [begin, end): a sliver from corner to corner has few of them, and there may be millions.
+inline std::pair<std::int64_t, std::int64_t> columns_at(const std::array<Snapped, 3>& p, std::int64_t y,
+                                                        std::int64_t begin, std::int64_t end) {
+  auto low = static_cast<double>(begin), high = static_cast<double>(end);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Snapped &a = p[k], &b = p[(k + 1) % 3];
+    if (a.y == b.y) continue;
+    const auto rise = static_cast<double>(b.y - a.y);
+    const double x =
+        static_cast<double>(a.x) + static_cast<double>(b.x - a.x) * static_cast<double>(y - a.y) / rise;
+    // A column more on either side, for what is rounded.
+    if (rise > 0)
+      high = std::min(high, std::floor(x / subtexels) + 2);
+    else
+      low = std::max(low, std::floor(x / subtexels) - 1);
+  }
+  if (!(low < high)) return {begin, begin};
+  return {static_cast<std::int64_t>(low), static_cast<std::int64_t>(high)};
+}
+
 // Calls each(column, row) for the texels of an atlas of size * size whose centres a chart's triangle holds.
 template <typename Each>
 void for_texels(const std::array<glm::vec2, 3>& uv, std::uint32_t size, const Each& each) {
@@ -62,10 +83,13 @@ void for_texels(const std::array<glm::vec2, 3>& uv, std::uint32_t size, const Ea
   const auto [top, bottom] = std::minmax({p[0].y, p[1].y, p[2].y});
   const auto [first_row, end_row] = centres_between(top, bottom, size);
   const auto [first_column, end_column] = centres_between(left, right, size);
-  for (std::int64_t j = first_row; j < end_row; ++j)
-    for (std::int64_t i = first_column; i < end_column; ++i)
-      if (covers(p, {i * subtexels + subtexels / 2, j * subtexels + subtexels / 2}))
+  for (std::int64_t j = first_row; j < end_row; ++j) {
+    const std::int64_t y = j * subtexels + subtexels / 2;
+    const auto [begin, end] = columns_at(p, y, first_column, end_column);
+    for (std::int64_t i = begin; i < end; ++i)
+      if (covers(p, {i * subtexels + subtexels / 2, y}))
         each(static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(j));
+  }
 }
 
 }  // namespace lichtveld::scene

@@ -33,6 +33,9 @@ std::span<const std::uint8_t> json_chunk(std::span<const std::uint8_t> bytes) {
     throw SceneError("truncated: its header promises " + std::to_string(length) + " bytes, the file has " +
                      std::to_string(bytes.size()));
   }
+  if (length < 20)
+    throw SceneError("damaged: its header promises " + std::to_string(length) +
+                     " bytes, and a .glb has at least 20");
   for (std::size_t at = 12, chunk = 0; at < length; ++chunk) {
     if (length - at < 8 || little_endian(bytes, at) > length - at - 8) {
       throw SceneError("damaged: chunk " + std::to_string(chunk) + " is longer than the file");

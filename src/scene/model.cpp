@@ -123,7 +123,10 @@ tinygltf::Model parse_model(std::vector<std::uint8_t> contents, const fs::path& 
   // Some of its errors leave out a primitive and go on: what is missing then would be missing in the picture.
   if (!read || !error.empty()) {
     std::ranges::replace(error, '\n', ' ');
-    throw SceneError("not valid glTF: " + (error.empty() ? "unknown reason" : error));
+    throw SceneError("not valid glTF: " +
+                     (error.empty() ? "something that it must say is missing or of another type; "
+                                      "the glTF validator tells what (github.khronos.org/glTF-Validator)"
+                                    : error));
   }
   std::istringstream lines(warning);
   for (std::string line; std::getline(lines, line);)

@@ -99,9 +99,19 @@ void expand_instances(tinygltf::Model& model) {
   }
 }
 
+// Of nodes that no scene shows, too: they are carried into a file that is written anew.
+void check_meshes(const tinygltf::Model& model) {
+  for (std::size_t i = 0; i < model.nodes.size(); ++i)
+    if (const int mesh = model.nodes[i].mesh;
+        mesh != -1 && (mesh < 0 || static_cast<std::size_t>(mesh) >= model.meshes.size()))
+      throw SceneError("node \"" + node_name(model, static_cast<int>(i)) + "\": there is no mesh " +
+                       std::to_string(mesh));
+}
+
 }  // namespace
 
 void make_plain(tinygltf::Model& model) {
+  check_meshes(model);
   show_indices(model);
   add_scene(model);
   expand_instances(model);

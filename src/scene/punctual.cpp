@@ -1,4 +1,6 @@
 // KHR_lights_punctual: lights without a surface.
+#include <spdlog/fmt/fmt.h>
+
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -12,6 +14,8 @@ namespace {
 constexpr const char* extension = "KHR_lights_punctual";
 // Each costs a ray a texel: more is a mistake.
 constexpr std::size_t most_lights = 1024;
+// As the file has it, maybe in lumens: sums of what comes of it at a millimetre are finite.
+constexpr double brightest = 1e12;
 
 using Kind = PunctualLight::Kind;
 
@@ -24,7 +28,7 @@ Kind kind_of(const std::string& type, const std::string& what) {
 }
 
 double require(double value, bool good, const std::string& what, const std::string& range) {
-  if (!std::isfinite(value) || !good) throw SceneError(what + " is " + std::to_string(value) + ": " + range);
+  if (!std::isfinite(value) || !good) throw SceneError(fmt::format("{} is {:g}: {}", what, value, range));
   return value;
 }
 
@@ -38,6 +42,9 @@ glm::vec3 intensity_of(const tinygltf::Light& light, const std::string& what) {
   for (std::size_t channel = 0; channel < light.color.size(); ++channel)
     colour[static_cast<int>(channel)] = static_cast<float>(
         require(light.color[channel], light.color[channel] >= 0, what + ": color", "it must be 0 or more"));
+  for (int channel = 0; channel < 3; ++channel)
+    require(intensity * double{colour[channel]}, intensity * double{colour[channel]} <= brightest,
+            what + ": intensity times color", "it must be at most 1e12");
   return colour * static_cast<float>(intensity);
 }
 
@@ -49,7 +56,7 @@ double extra(const tinygltf::Light& light, const char* name, double otherwise, d
   if (!value.IsNumber()) throw SceneError(what + ": extras." + name + " is no number");
   const double number = value.GetNumberAsDouble();
   return require(number, number >= 0 && number <= most, what + ": extras." + name,
-                 "it must be 0.." + std::to_string(most));
+                 fmt::format("it must be 0..{:g}", most));
 }
 
 void set_cone(const tinygltf::Light& light, const std::string& what, PunctualLight& result) {

@@ -12,6 +12,7 @@
 #include <numeric>
 #include <sstream>
 
+#include "exr_header.hpp"
 #include "lichtveld/scene/lights.hpp"
 
 namespace lichtveld::scene {
@@ -23,6 +24,7 @@ constexpr std::uint64_t most_pixels = std::uint64_t{1} << 27;  // 16384 x 8192
 constexpr std::uint32_t most_columns = 1024;                   // that are kept: a third of a degree each
 constexpr std::uint32_t harmonic_columns = 128;
 constexpr float brightest = 1e6f;
+constexpr const char* openexr = "openexr";  // as OpenImageIO calls it
 
 // A sun is brighter than `sun_contrast` times what all but a twentieth of the sky is, no larger than 9 degrees
 // across, and brings a hundredth of all light or more.
@@ -147,14 +149,16 @@ const char* format_of(const fs::path& file) {
   if (!in.read(start.data(), start.size()))
     throw SceneError("sky " + file.string() + ": it cannot be read; give a .hdr, a .exr or R,G,B");
   if (start[0] == '#' && start[1] == '?') return "hdr";
-  if (start == std::array<char, 4>{0x76, 0x2f, 0x31, 0x01}) return "openexr";
+  if (start == std::array<char, 4>{0x76, 0x2f, 0x31, 0x01}) return openexr;
   throw SceneError("sky " + file.string() + ": it is neither Radiance .hdr nor OpenEXR");
 }
 
 // Boxes of pixels of the picture, row by row.
 Sky read_picture(const fs::path& file) {
   const std::string what = "sky " + file.string();
-  const auto input = OIIO::ImageInput::create(format_of(file));
+  const std::string format = format_of(file);
+  if (format == openexr) check_exr_header(file, what);
+  const auto input = OIIO::ImageInput::create(format);
   OIIO::ImageSpec spec;
   if (!input || !input->open(file.string(), spec)) {
     const std::string reason = input ? input->geterror() : "OpenImageIO has no reader for it";

@@ -8,22 +8,8 @@ namespace lichtveld::scene {
 namespace {
 
 using nlohmann::json;
-
-int view_of(SceneBuilder& builder, int accessor) {
-  return accessor_json(builder, accessor)["bufferView"].get<int>();
-}
-
-// Elements `indices` of an accessor get `values`.
-template <typename Index, typename Value>
-void make_sparse(SceneBuilder& builder, int accessor, const std::vector<Index>& indices,
-                 const std::vector<Value>& values) {
-  const int at = view_of(builder, builder.accessor(indices, 5121, "SCALAR"));
-  const int what = view_of(builder, builder.accessor(values, 5121, "SCALAR"));
-  const int type = sizeof(Index) == 1 ? 5121 : sizeof(Index) == 2 ? 5123 : 5125;
-  accessor_json(builder, accessor)["sparse"] = {{"count", indices.size()},
-                                                {"indices", {{"bufferView", at}, {"componentType", type}}},
-                                                {"values", {{"bufferView", what}}}};
-}
+using testing::make_sparse;
+using testing::whole_numbers;
 
 std::vector<glm::vec3> corners_of(const Scene& scene) {
   std::vector<glm::vec3> result;
@@ -100,31 +86,9 @@ TEST(SceneAccessors, BadSparsePartsAreRefused) {
   EXPECT_THAT(error_of_bytes(builder.glb()), ::testing::HasSubstr(what));
 }
 
-// Attributes of the floor in whole numbers.
-template <typename T>
-int whole_numbers(SceneBuilder& builder, const std::vector<T>& elements, int type, const char* kind,
-                  bool normalised) {
-  const int accessor = builder.accessor(elements, type, kind);
-  accessor_json(builder, accessor)["normalized"] = normalised;
-  return accessor;
-}
-
 TEST(SceneAccessors, QuantisedAttributesAreRead) {
   for (const char* key : {"extensionsUsed", "extensionsRequired"}) {
-    SceneBuilder builder = sound();
-    builder.gltf[key] = {"KHR_mesh_quantization"};
-    using Shorts = std::array<std::int16_t, 4>;  // of which three count, to be aligned
-    const int positions = whole_numbers(
-        builder, std::vector<Shorts>{{-100, 0, 100}, {100, 0, 100}, {100, 0, -100}, {-100, 0, -100}}, 5122,
-        "VEC3", false);
-    builder.gltf["bufferViews"][static_cast<std::size_t>(view_of(builder, positions))]["byteStride"] = 8;
-    attributes(builder)["POSITION"] = positions;
-    using Bytes = std::array<std::int8_t, 4>;
-    const int normals = whole_numbers(builder, std::vector<Bytes>(4, {0, 127, -128}), 5120, "VEC3", true);
-    builder.gltf["bufferViews"][static_cast<std::size_t>(view_of(builder, normals))]["byteStride"] = 4;
-    attributes(builder)["NORMAL"] = normals;
-    builder.node(0)["scale"] = {0.01, 0.01, 0.01};
-    const Scene scene = loaded(builder);
+    const Scene scene = loaded(testing::quantised(key));
     EXPECT_LT(glm::distance(scene.vertices[0].position, {-1, 0, 1}), 1e-6f);
     EXPECT_LT(glm::distance(scene.vertices[0].normal, glm::normalize(glm::vec3(0, 1, -1))), 1e-6f);
   }

@@ -1,6 +1,10 @@
 // check_atlas(): which texels are valid, and who shares them.
 #include <gmock/gmock.h>
 
+#include <random>
+#include <set>
+
+#include "atlas_raster.hpp"
 #include "lichtveld/scene/atlas.hpp"
 #include "lichtveld/scene/scene.hpp"
 #include "scene_builder.hpp"
@@ -92,6 +96,27 @@ TEST(SceneAtlas, NothingCoveredIsAnError) {
   const Scene scene = scene_with({{"dot", {0.5f, 0.5f, 0.501f, 0.501f}}});
   EXPECT_THAT(atlas_error(scene, 16), ::testing::HasSubstr("no texel of 16 x 16 lies on a chart"));
   EXPECT_THAT(atlas_error(scene, 0), ::testing::HasSubstr("outside 1..16384"));
+}
+
+// Columns that cannot hold a centre are left out row by row, and no others.
+TEST(SceneAtlas, TexelsOfATriangleAreThoseWhoseCentresItHolds) {
+  constexpr std::uint32_t size = 32;
+  std::mt19937 random(1);
+  const auto share = [&] { return static_cast<float>(random() % 1025) / 1024; };
+  for (int round = 0; round < 3000; ++round) {
+    std::array<glm::vec2, 3> uv{glm::vec2(share(), share()), {share(), share()}, {share(), share()}};
+    if (round % 3 == 0) uv[2] = uv[1] + 0.03f * glm::vec2(share(), share());  // a sliver
+    if (round % 7 == 0) uv[1].y = uv[0].y;
+    std::set<std::pair<std::uint32_t, std::uint32_t>> found, expected;
+    for_texels(uv, size, [&](std::uint32_t i, std::uint32_t j) { found.emplace(i, j); });
+    std::array<Snapped, 3> p{snapped(uv[0], size), snapped(uv[1], size), snapped(uv[2], size)};
+    if (edge(p[0], p[1], p[2]) < 0) std::swap(p[1], p[2]);
+    for (std::uint32_t j = 0; j < size; ++j)
+      for (std::uint32_t i = 0; i < size; ++i)
+        if (edge(p[0], p[1], p[2]) != 0 && covers(p, {i * subtexels + subtexels / 2, j * subtexels + subtexels / 2}))
+          expected.emplace(i, j);
+    ASSERT_EQ(found, expected) << round;
+  }
 }
 
 }  // namespace

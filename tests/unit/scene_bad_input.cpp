@@ -38,6 +38,7 @@ const std::vector<SpoiltCase> spoilt_cases = {
     {"LightOutside", with_light({{"type", "point"}}, 1), "node \"floor\": light: there is no light 1"},
     {"LightOfNoKind", with_light({{"type", "disco"}}), "no light of type \"disco\""},
     {"LightNegative", with_light({{"type", "point"}, {"intensity", -1}}), "intensity is -1"},
+    {"LightHuge", with_light({{"type", "point"}, {"intensity", 1e300}}), "it must be at most 1e12"},
     {"LightColour", with_light({{"type", "point"}, {"color", {1, -2, 1}}}), "color is -2"},
     {"LightRange", with_light({{"type", "point"}, {"range", -1}}), "range is -1"},
     {"SpotInsideOut",
@@ -233,6 +234,27 @@ TEST_F(SceneBadInput, LyingChunkLengths) {
   std::string longer = bytes;  // by the 8 bytes of its own header
   longer[json_bytes] = static_cast<char>(longer[json_bytes] + 8);
   EXPECT_THAT(error_of_bytes(longer), ::testing::HasSubstr("chunk 1 is longer than the file"));
+  for (char length = 0; length < 20; ++length) {  // of a file that ends before its first chunk, which is long
+    std::string shorter = bytes;
+    shorter.replace(8, 8, {length, 0, 0, 0, 0, 0, 0, '\x70'});
+    EXPECT_THAT(error_of_bytes(shorter), ::testing::HasSubstr("a .glb has at least 20")) << int{length};
+  }
+}
+
+// What no scene shows is refused by its name, too, and not where somebody follows it.
+TEST_F(SceneBadInput, MeshesOfUnseenNodes) {
+  SceneBuilder builder = sound();
+  builder.gltf["nodes"].push_back({{"name", "unseen"}, {"mesh", 77}});
+  EXPECT_THAT(error_of_bytes(builder.glb()), ::testing::HasSubstr("node \"unseen\": there is no mesh 77"));
+  builder.gltf["nodes"][1]["mesh"] = 77;
+  builder.gltf["nodes"][1]["extensions"]["KHR_node_visibility"]["visible"] = false;
+  EXPECT_THAT(error_of_bytes(builder.glb()), ::testing::HasSubstr("node \"child\": there is no mesh 77"));
+}
+
+TEST_F(SceneBadInput, WhereTheReaderGivesNoReasonAProgramIsNamed) {
+  SceneBuilder builder = sound();
+  builder.gltf["skins"] = {{{"name", "of no joints"}}};
+  EXPECT_THAT(error_of_bytes(builder.glb()), ::testing::HasSubstr("the glTF validator"));
 }
 
 TEST_F(SceneBadInput, LinksOutOfTheFolderAreNotFollowed) {

@@ -3,18 +3,21 @@
 
 #include <gmock/gmock.h>
 
-#include <cstring>
 #include <filesystem>
 #include <functional>
 #include <string>
 #include <vector>
 
 #include "lichtveld/scene/scene.hpp"
-#include "scene_builder.hpp"
+#include "scene_features.hpp"
 
 namespace lichtveld::scene {
 
+using testing::accessor_json;
+using testing::attributes;
+using testing::overwrite;
 using testing::SceneBuilder;
+using testing::sound;
 using testing::TempFolder;
 
 inline std::string error_of(const std::filesystem::path& file) {
@@ -36,16 +39,6 @@ inline Scene loaded(const SceneBuilder& builder) {
   return load(folder.write("scene.glb", builder.glb()));
 }
 
-// A floor and a child node; accessors: 0 POSITION, 1 TEXCOORD_1, 2 indices.
-inline SceneBuilder sound() {
-  SceneBuilder builder;
-  builder.quad("floor", {glm::vec3{-1, 0, 1}, {1, 0, 1}, {1, 0, -1}, {-1, 0, -1}}, {0.1f, 0.1f, 0.9f, 0.9f},
-               builder.material({0.5f, 0.5f, 0.5f}, {1, 1, 1}));
-  builder.gltf["nodes"].push_back({{"name", "child"}});
-  builder.gltf["nodes"][0]["children"] = {1};
-  return builder;
-}
-
 struct SpoiltCase {
   const char* name;
   std::function<void(SceneBuilder&)> spoil;
@@ -59,22 +52,6 @@ inline void expect_refused(const SceneBuilder& sound_one, const std::vector<Spoi
     bad.spoil(builder);
     EXPECT_THAT(error_of_bytes(builder.glb()), ::testing::HasSubstr(bad.message)) << bad.name;
   }
-}
-
-template <typename T>
-void overwrite(SceneBuilder& builder, std::size_t accessor, std::size_t element, T value) {
-  const nlohmann::json& view =
-      builder.gltf["bufferViews"][builder.gltf["accessors"][accessor]["bufferView"].get<std::size_t>()];
-  std::memcpy(&builder.bin.at(view["byteOffset"].get<std::size_t>() + element * sizeof value), &value,
-              sizeof value);
-}
-
-inline nlohmann::json& accessor_json(SceneBuilder& builder, int accessor) {
-  return builder.gltf["accessors"][static_cast<std::size_t>(accessor)];
-}
-
-inline nlohmann::json& attributes(SceneBuilder& b) {
-  return b.primitive(0)["attributes"];
 }
 
 }  // namespace lichtveld::scene

@@ -9,38 +9,19 @@
 #include "remarks.hpp"
 #include "scene_damage.hpp"
 #include "scene_log.hpp"
-#include "scene_pictures.hpp"
 
 namespace lichtveld::scene {
 namespace {
 
 using nlohmann::json;
+using testing::base_colour;
+using testing::image_of;
 using testing::LogCapture;
 using testing::text_of;
+using testing::textured;
 
 // Of linear light, of 255 0 0 and 10 20 30.
 constexpr glm::vec3 red{1, 0, 0}, dark{0.003035f, 0.006995f, 0.012983f};
-
-json& base_colour(SceneBuilder& b) {
-  return b.gltf["materials"][0]["pbrMetallicRoughness"];
-}
-
-json image_of(SceneBuilder& builder, const std::string& bytes) {
-  const int accessor = builder.accessor(std::vector<char>(bytes.begin(), bytes.end()), 5121, "SCALAR");
-  return {{"bufferView", accessor_json(builder, accessor)["bufferView"]}};
-}
-
-// sound() with a white material and a picture of two pixels on TEXCOORD_0, which is 0..1 over the floor: u runs
-// along x, v along z.
-SceneBuilder textured() {
-  SceneBuilder builder = sound();
-  base_colour(builder) = {{"baseColorTexture", {{"index", 0}}}};
-  builder.gltf["images"] = {image_of(builder, text_of(testing::png))};
-  builder.gltf["textures"] = {{{"source", 0}}};
-  attributes(builder)["TEXCOORD_0"] =
-      builder.accessor(std::vector<glm::vec2>{{0, 1}, {1, 1}, {1, 0}, {0, 0}}, 5126, "VEC2");
-  return builder;
-}
 
 // Of a place on the floor, -1..1.
 glm::vec3 albedo_of(const Scene& scene, float x, float z) {

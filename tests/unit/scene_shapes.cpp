@@ -12,12 +12,12 @@ namespace lichtveld::scene {
 namespace {
 
 using nlohmann::json;
+using testing::instanced;
+using testing::morphing;
+using testing::skinned;
+using testing::vectors;
 
 const std::vector<glm::vec3> up(4, {0, 1, 0});
-
-int vectors(SceneBuilder& builder, const std::vector<glm::vec3>& elements) {
-  return builder.accessor(elements, 5126, "VEC3");
-}
 
 void expect_at(const Scene& scene, std::size_t vertex, const glm::vec3& place, const glm::vec3& normal) {
   const Vertex& found = scene.vertices[vertex];
@@ -25,17 +25,6 @@ void expect_at(const Scene& scene, std::size_t vertex, const glm::vec3& place, c
       << found.position.x << " " << found.position.y << " " << found.position.z;
   EXPECT_LT(glm::distance(found.normal, normal), 1e-5f)
       << found.normal.x << " " << found.normal.y << " " << found.normal.z;
-}
-
-// The floor, smooth, with two targets: one lifts it by 1 m, the other moves it by 2 m along x and tilts
-// normals.
-SceneBuilder morphing() {
-  SceneBuilder builder = sound();
-  attributes(builder)["NORMAL"] = vectors(builder, up);
-  builder.primitive(0)["targets"] = {{{"POSITION", vectors(builder, up)}},
-                                     {{"POSITION", vectors(builder, std::vector<glm::vec3>(4, {2, 0, 0}))},
-                                      {"NORMAL", vectors(builder, std::vector<glm::vec3>(4, {1, 0, 0}))}}};
-  return builder;
 }
 
 TEST(SceneShapes, MorphTargetsMoveByTheirWeights) {
@@ -85,29 +74,6 @@ TEST(SceneShapes, BadTargetsAreRefused) {
           b.node(0)["weights"] = {1e300, 0};
         },
         "vertex 0 is not finite or more than"}});
-}
-
-// The floor hangs on two joints: those of -x on "left", of +x on "right", 1 m right of it.
-SceneBuilder skinned(bool bound = true) {
-  SceneBuilder builder = sound();
-  attributes(builder)["NORMAL"] = vectors(builder, up);
-  attributes(builder)["JOINTS_0"] = builder.accessor(
-      std::vector<std::array<std::uint8_t, 4>>{{0, 0, 0, 0}, {1, 0, 0, 0}, {1, 0, 0, 0}, {0, 0, 0, 0}}, 5121,
-      "VEC4");
-  attributes(builder)["WEIGHTS_0"] = builder.accessor(std::vector<glm::vec4>(4, {1, 0, 0, 0}), 5126, "VEC4");
-  auto& nodes = builder.gltf["nodes"];
-  nodes.push_back({{"name", "left"}, {"children", {3}}});
-  nodes.push_back({{"name", "right"}, {"translation", {1, 0, 0}}});
-  builder.gltf["scenes"][0]["nodes"].push_back(2);
-  builder.gltf["skins"] = {{{"joints", {2, 3}}}};
-  if (bound) {
-    const std::vector<glm::mat4> inverse = {glm::mat4(1),
-                                            glm::mat4({1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {-1, 0, 0, 1})};
-    builder.gltf["skins"][0]["inverseBindMatrices"] = builder.accessor(inverse, 5126, "MAT4");
-  }
-  builder.node(0)["skin"] = 0;
-  builder.node(0)["translation"] = {50, 60, 70};  // of a skinned node nobody asks
-  return builder;
 }
 
 TEST(SceneShapes, SkinsFollowTheirJoints) {
@@ -187,15 +153,6 @@ TEST(SceneShapes, BadSkinsAreRefused) {
         "fewer inverseBindMatrices than joints"},
        {"MatrixKind", [&](auto& b) { skin(b)["inverseBindMatrices"] = 0; }, "expected MAT4 of float"},
        {"MatrixAbsent", [&](auto& b) { skin(b)["inverseBindMatrices"] = 99; }, "there is no accessor 99"}});
-}
-
-// The floor three times, 0, 3 and 6 m along x.
-SceneBuilder instanced() {
-  SceneBuilder builder = sound();
-  builder.gltf["extensionsRequired"] = {"EXT_mesh_gpu_instancing"};
-  builder.node(0)["extensions"]["EXT_mesh_gpu_instancing"]["attributes"] = {
-      {"TRANSLATION", vectors(builder, {{0, 0, 0}, {3, 0, 0}, {6, 0, 0}})}};
-  return builder;
 }
 
 json& instance_attributes(SceneBuilder& b) {

@@ -133,6 +133,10 @@ TEST_F(Skies, ThatCannotBeAreRefused) {
   refuses(path("cut.hdr"), "does not decode");
   folder_.write("cut.exr", std::string("\x76\x2f\x31\x01\x02\0\0\0", 8));
   refuses(path("cut.exr"), "does not decode");
+  // A text of 1.7 GB: no memory is taken for it.
+  folder_.write("long.exr", std::string("\x76\x2f\x31\x01\x02\0\0\0comments\0string\0tion"
+                                        "channels", 37));
+  refuses(path("long.exr"), "its header says more than the file holds");
   folder_.write("square.hdr", hdr(32, 32, [](int, int) { return glm::vec3(1); }));
   refuses(path("square.hdr"), "twice as wide");
   folder_.write("vast.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 10000 +X 20000\n");

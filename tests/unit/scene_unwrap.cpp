@@ -441,6 +441,31 @@ TEST(SceneUnwrap, AnAtlasThatIsTooSmallIsDoubled) {
   EXPECT_GT(std::ranges::count(has_texel, true), 2850);
 }
 
+// Each pair fills the atlas: they are not all looked at, however many there are.
+TEST(SceneUnwrap, ManyThatFillAnAtlasAreLaidAnew) {
+  constexpr std::size_t copies = 30'000;
+  LogCapture log;
+  SceneBuilder builder;
+  std::vector<std::uint16_t> indices;
+  for (std::size_t copy = 0; copy < copies; ++copy) indices.insert(indices.end(), {0, 1, 2, 0, 2, 3});
+  builder.mesh("pile", {{-1, 0, 1}, {1, 0, 1}, {1, 0, -1}, {-1, 0, -1}}, {{0, 1}, {1, 1}, {1, 0}, {0, 0}}, indices,
+               builder.material(glm::vec3(0.5f)));
+  const Unwrapped unwrapped = Case(builder).unwrapped();
+  EXPECT_THAT(unwrapped.reason, HasSubstr("triangles of node \"pile\" lie on many others in TEXCOORD_1"));
+}
+
+// An animation that no light is found by may claim any number of zeros.
+TEST(SceneUnwrap, NoMoreIsWrittenThanCanBeRead) {
+  SceneBuilder builder = room();
+  builder.gltf["accessors"].push_back({{"componentType", 5126}, {"type", "VEC4"}, {"count", 1ull << 60}});
+  const auto zeros = builder.gltf["accessors"].size() - 1;
+  builder.gltf["animations"] = {
+      {{"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "rotation"}}}}}},
+       {"samplers", {{{"input", zeros}, {"output", zeros}}}}}};
+  EXPECT_THAT([&] { Case(builder).unwrapped(); },
+              ::testing::ThrowsMessage<SceneError>(HasSubstr("larger than 1 GiB")));
+}
+
 TEST(SceneUnwrap, AnythingEnds) {
   // Corners on few places: edges of many triangles, triangles without area, copies and their backs.
   SceneBuilder builder;

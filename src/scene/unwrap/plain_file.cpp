@@ -19,6 +19,8 @@ using nlohmann::json;
 constexpr std::array gone = {"KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_meshopt_compression",
                              "EXT_mesh_gpu_instancing"};
 
+constexpr std::size_t most_bytes = 1u << 30;  // of the buffer that is written: no more is read
+
 constexpr std::uint32_t json_chunk_type = 0x4e4f534a, binary_chunk_type = 0x004e4942;
 
 void append(PlainFile::Bytes& to, std::uint32_t value) {
@@ -91,6 +93,12 @@ void PlainFile::take_nodes() {
   root_["scene"] = 0;
 }
 
+// Before they are taken: an accessor without bytes of its own may claim any number of elements.
+void PlainFile::require_room(std::size_t elements, std::size_t bytes) const {
+  const std::size_t left = most_bytes - std::min(binary_.size(), most_bytes);
+  if (elements > left / bytes) throw SceneError("written anew it would be larger than 1 GiB: simplify it");
+}
+
 int PlainFile::add_view(const Bytes& bytes, int target, std::size_t stride) {
   pad(binary_, 0);
   json view = {{"buffer", 0}, {"byteOffset", binary_.size()}, {"byteLength", bytes.size()}};
@@ -127,6 +135,7 @@ int PlainFile::carried(int accessor, int target) {
   if (!was.minValues.empty()) description["min"] = was.minValues;
   if (!was.maxValues.empty()) description["max"] = was.maxValues;
   const std::size_t element = in.element_bytes();
+  require_room(in.count(), element);
   Bytes bytes(in.count() * element);
   for (std::size_t i = 0; i < in.count(); ++i) std::memcpy(&bytes[i * element], in.element(i), element);
   return carried_[accessor] = add_accessor(std::move(description), bytes, target, element);
@@ -137,6 +146,7 @@ int PlainFile::chosen(int accessor, std::span<const std::uint32_t> elements, con
   json description = described(accessor);
   description["count"] = elements.size();
   const std::size_t element = in.element_bytes(), stride = (element + 3) / 4 * 4;
+  require_room(elements.size(), stride);
   Bytes bytes(elements.size() * stride);
   for (std::size_t i = 0; i < elements.size(); ++i) {
     if (elements[i] >= in.count()) throw SceneError(semantic + " has fewer elements than POSITION");
@@ -194,7 +204,9 @@ int PlainFile::carried_mesh(int mesh) {
     const auto whole = [&](int accessor, const std::string& semantic) {
       const auto [known, is_new] = carried_vertices_.try_emplace(accessor);
       if (!is_new) return known->second;
-      std::vector<std::uint32_t> all(model_.accessors.at(static_cast<std::size_t>(accessor)).count);
+      const Accessor in_file(model_, accessor, semantic);
+      require_room(in_file.count(), in_file.element_bytes());
+      std::vector<std::uint32_t> all(in_file.count());
       std::iota(all.begin(), all.end(), 0u);
       return known->second = chosen(accessor, all, semantic);
     };

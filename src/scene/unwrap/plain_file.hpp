@@ -52,6 +52,7 @@ class PlainFile {
 
  private:
   nlohmann::json described(int accessor) const;
+  void require_room(std::size_t elements, std::size_t bytes) const;
   int add_view(const Bytes& bytes, int target, std::size_t stride);
   int add_vectors(std::span<const float> numbers, std::size_t components, const char* type);
   int add_accessor(nlohmann::json description, const Bytes& bytes, int target, std::size_t stride);

@@ -17,7 +17,9 @@ namespace {
 // Whether an atlas is used as it is must not depend on the size that is baked: it is looked at on this raster.
 constexpr std::uint32_t judged_at = 512;
 constexpr double most_overlap = 0.005;  // of the cells that charts fill
-constexpr double most_flat = 0.5;       // of the surfaces' area, that has none in the atlas
+// No more cells are looked at, whatever lies on each other: millions of triangles can each fill the atlas.
+constexpr std::size_t most_looks = std::size_t{64} * judged_at * judged_at;
+constexpr double most_flat = 0.5;  // of the surfaces' area, that has none in the atlas
 
 std::string in_quotes(const std::string& name) {
   return '"' + name + '"';
@@ -162,7 +164,7 @@ std::string fault_of(const Meshes& meshes) {
     const Use* use = nullptr;
   };
   std::vector<Owner> owners(std::size_t{judged_at} * judged_at);
-  std::size_t filled = 0, shared = 0;
+  std::size_t filled = 0, shared = 0, looks = 0;
   double area = 0, flat_area = 0;
   std::map<std::pair<std::string, std::string>, std::size_t> pairs;
   std::string flattest;
@@ -187,7 +189,10 @@ std::string fault_of(const Meshes& meshes) {
           }
           // A texel's hair is nobody's: charts may touch.
           constexpr double margin = 0.05;
+          if (looks > most_looks)
+            return "triangles of node " + in_quotes(use.name) + " lie on many others in TEXCOORD_1";
           flat->for_cells(margin, judged_at, [&](std::int64_t i, std::int64_t j) {
+            ++looks;
             Owner& owner = owners[static_cast<std::size_t>(j * judged_at + i)];
             if (!owner.corners) {
               ++filled;
