@@ -34,6 +34,8 @@ struct Between {
 // The coordinate in 0..1 that stands for one outside. First of all, so that coordinates far out keep what
 // precision they have.
 double wrapped(double coordinate, Wrap wrap) {
+  if (!std::isfinite(coordinate))
+    return 0;  // a hair outside of a triangle whose corners are as far out as can be
   switch (wrap) {
     case Wrap::repeat:
       return coordinate - std::floor(coordinate);

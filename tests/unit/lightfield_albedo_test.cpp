@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <limits>
 
 #include "core/texel_albedo.hpp"
 #include "core/texel_records.hpp"
@@ -100,6 +101,21 @@ TEST(TexelAlbedo, OfAChartWithoutATexelIsItsMean) {
   const Rows rows(scene, records, 1);
   ASSERT_EQ(rows.count(), 1u);
   EXPECT_LT(glm::distance(rows[0].albedo, glm::vec3(0.5f, 0.5f, 0)), 0.01f);
+}
+
+// Beside a corner as far out as a number can be a coordinate is none.
+TEST(TexelAlbedo, OfCoordinatesWithoutEndIsOne) {
+  auto scene = floor(chequers(4), 1);
+  scene.vertices[0].colour = glm::vec2(0, std::numeric_limits<float>::max());
+  const TexelRecords records(scene, 64);
+  for (const auto& record : records.all()) {
+    ASSERT_GE(record.albedo.g, 0);
+    ASSERT_LE(record.albedo.g, 1);
+  }
+  for (const auto wrap : {scene::Wrap::repeat, scene::Wrap::mirror, scene::Wrap::clamp}) {
+    const auto value = scene::sample_srgb(scene.textures[0], glm::vec2(INFINITY, -INFINITY), {wrap, wrap});
+    EXPECT_TRUE(value.g >= 0 && value.g <= 1);
+  }
 }
 
 }  // namespace
