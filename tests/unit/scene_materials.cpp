@@ -173,6 +173,9 @@ TEST(SceneMaterials, BadTexturesAreRefused) {
           transform(b)["offset"] = {1e300, 0};
         },
         "of vertex 0 is not finite"},
+       // What lies between such and their like is no number.
+       {"AtTheEnd", [](auto& b) { overwrite(b, attributes(b)["TEXCOORD_0"].template get<std::size_t>(), 1, 3e38f); },
+        "of vertex 0 is not finite or beyond 1e30"},
        {"Sampler", [](auto& b) { b.gltf["textures"][0]["sampler"] = 7; }, "there is no sampler 7"},
        {"Wrap",
         [](auto& b) {
