@@ -37,6 +37,9 @@ constexpr std::array directions = {24u, 96u, 384u, 1536u};
 constexpr double usual_error_of_texels = 0.05;
 // The first map of a room that people wait for.
 constexpr Milliseconds longest_first(10'000);
+// Of what a trial with many directions takes at least so much is theirs, however busy the machine was during
+// the other: that more of them cost nothing is never so.
+constexpr double least_of_directions = 0.05;
 // A choice that takes that much longer than was thought is thought over.
 constexpr double allowed_excess = 1.1;
 
@@ -187,7 +190,8 @@ Forecast::Cost Forecast::fit(std::span<const Trial> trials, double Trial::*time)
   const double texels = double{1} * least.size * least.size, a = trials[0].*time;
   if (trials.size() == 1) return {.of_links = a / (texels * least.psf)};
   const double b = trials[1].*time, more_directions = directions_tried[1] - directions_tried[0];
-  Cost cost{.of_links = std::max(b - a, 0.0) / (more_directions * texels)};
+  Cost cost{.of_links =
+                std::max((b - a) / more_directions, least_of_directions * b / directions_tried[1]) / texels};
   if (trials.size() == 2) {
     cost.of_texels = std::max(a / texels - cost.of_links * least.psf, 0.0);
     return cost;

@@ -7,6 +7,7 @@
 #include "device_for_tests.hpp"
 #include "known_scenes.hpp"
 #include "lichtveld/scene/atlas.hpp"
+#include "lichtveld/scene/gutters.hpp"
 #include "light_fields.hpp"
 #include "passes/geometry_texture.hpp"
 #include "shapes.hpp"
@@ -104,7 +105,9 @@ TEST_P(Records, AreWhatTheDeviceDraws) {
 // By brute force: of the texels on charts within the gutter's width the nearest.
 TEST_P(Records, GuttersNameTheirNearest) {
   constexpr std::uint32_t size = 64;
-  const TexelRecords records(GetParam().scene(), size);
+  const auto scene = GetParam().scene();
+  const TexelRecords records(scene, size);
+  const auto belongs = scene::gutter_sources(scene, size, scene::valid_texels(scene, size));
   ASSERT_EQ(records.source().size(), size * size);
   const auto distance_to = [&](std::uint32_t texel, const TexelRecord& record) {
     const glm::ivec2 apart =
@@ -115,8 +118,10 @@ TEST_P(Records, GuttersNameTheirNearest) {
     int nearest = 1000;
     for (const auto& record : records.all()) nearest = std::min(nearest, distance_to(texel, record));
     const auto source = records.source()[texel];
-    ASSERT_EQ(source == no_record, nearest == 1000) << texel;
-    if (source != no_record) {
+    ASSERT_EQ(source == no_record, nearest == 1000 && belongs[texel] == scene::no_texel) << texel;
+    if (belongs[texel] != scene::no_texel) {
+      ASSERT_EQ(records[source].atlas, belongs[texel]) << "what a chart reads there";
+    } else if (source != no_record) {
       ASSERT_EQ(distance_to(texel, records[source]), nearest) << texel;
     }
   }
