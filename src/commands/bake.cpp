@@ -137,9 +137,10 @@ void bake(BakeOptions options) {
     buried.emplace(job.scene, baked.size);
     baked.report["texels_buried"] = buried->count();
   }
+  const Gutters gutters(job.scene, baked.size);
   const auto finish = [&](std::vector<glm::vec4>& irradiance) {
     if (buried) buried->take_light_of_neighbours(irradiance);
-    fill_gutters(job.scene, baked.size, irradiance);
+    gutters.fill(irradiance);
   };
   finish(baked.irradiance);
   for (auto& light : baked.apart) finish(light.irradiance);

@@ -7,22 +7,24 @@
 
 namespace lichtveld::commands {
 
-void fill_gutters(const scene::Scene& scene, std::uint32_t size, std::span<glm::vec4> texels) {
-  const auto source = scene::gutter_sources(scene, size, scene::valid_texels(scene, size));
+Gutters::Gutters(const scene::Scene& scene, std::uint32_t size)
+    : size_(size), source_(scene::gutter_sources(scene, size, scene::valid_texels(scene, size))) {}
+
+void Gutters::fill(std::span<glm::vec4> texels) const {
   for (std::uint32_t i = 0; i < texels.size(); ++i)
-    if (texels[i] == glm::vec4(0) && source[i] != scene::no_texel)
-      texels[i] = glm::vec4(glm::vec3(texels[source[i]]), 0);
-  const auto n = static_cast<std::int64_t>(size);
+    if (texels[i] == glm::vec4(0) && source_[i] != scene::no_texel)
+      texels[i] = glm::vec4(glm::vec3(texels[source_[i]]), 0);
+  const auto n = static_cast<std::int64_t>(size_);
   std::vector<bool> has_value(texels.size());
   std::vector<std::uint32_t> ring;  // texels without one that may get it next
   const auto for_neighbours = [&](std::uint32_t index, const auto& each) {
-    const std::int64_t x = index % size, y = index / size;
+    const std::int64_t x = index % size_, y = index / size_;
     for (std::int64_t v = std::max<std::int64_t>(y - 1, 0); v <= std::min(y + 1, n - 1); ++v)
       for (std::int64_t u = std::max<std::int64_t>(x - 1, 0); u <= std::min(x + 1, n - 1); ++u)
         each(static_cast<std::uint32_t>(v * n + u));
   };
   for (std::uint32_t i = 0; i < texels.size(); ++i)
-    has_value[i] = texels[i] != glm::vec4(0) || source[i] != scene::no_texel;
+    has_value[i] = texels[i] != glm::vec4(0) || source_[i] != scene::no_texel;
   std::vector<bool> is_open(texels.size());
   const auto open_around = [&](std::uint32_t index) {
     for_neighbours(index, [&](std::uint32_t other) {

@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <utility>
+#include <numbers>
+
+#include "unwrap/flat_triangle.hpp"
 
 namespace lichtveld::scene {
 
@@ -82,43 +83,17 @@ class Gutters {
       p[k] = corner(triangle, k).atlas * static_cast<float>(size_) - 0.5f;  // centres are whole numbers
     const glm::vec2 u = p[1] - p[0], v = p[2] - p[0];
     if (u.x * v.y == u.y * v.x) return;
-    const auto [top, bottom] = std::minmax({p[0].y, p[1].y, p[2].y});
-    for (int y = first(top - reads); y <= last(bottom + reads); ++y) {
-      const auto [left, right] = across(p, static_cast<float>(y));
-      for (int x = first(left - reads); x <= last(right + reads); ++x) {
-        const auto texel = static_cast<std::size_t>(y * size_ + x);
-        if (number_[texel] != no_texel) continue;
-        const glm::vec2 centre(x, y), at = nearest(p, centre);
-        const glm::vec2 apart = glm::abs(p[0] + at.x * u + at.y * v - centre);
-        if (std::max(apart.x, apart.y) >= reads) continue;
-        if (const float distance = glm::dot(apart, apart); distance < beside[texel].distance)
-          beside[texel] = {{triangle, at}, distance};
-      }
-    }
-  }
-
-  int first(float from) const {
-    return static_cast<int>(std::ceil(std::clamp(from, 0.0f, static_cast<float>(size_))));
-  }
-  int last(float to) const {
-    return static_cast<int>(std::floor(std::clamp(to, -1.0f, static_cast<float>(size_ - 1))));
-  }
-
-  // From where to where a triangle goes in the rows that a look-up from row y reaches: slivers that cross the
-  // atlas are read by few texels of each.
-  static std::pair<float, float> across(const std::array<glm::vec2, 3>& p, float y) {
-    float left = std::numeric_limits<float>::max(), right = -left;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const glm::vec2 &a = p[k], &b = p[(k + 1) % 3];
-      const auto [low, high] = std::minmax(a.y, b.y);
-      if (low > y + reads || high < y - reads) continue;
-      for (const float at : {std::max(low, y - reads), std::min(high, y + reads)}) {
-        const float x = a.y == b.y ? a.x : glm::mix(a.x, b.x, (at - a.y) / (b.y - a.y));
-        left = std::min({left, x, a.y == b.y ? b.x : x});
-        right = std::max({right, x, a.y == b.y ? b.x : x});
-      }
-    }
-    return {left, right};
+    const auto flat = FlatTriangle::of({p[0] + 0.5f, p[1] + 0.5f, p[2] + 0.5f});
+    if (!flat) return;
+    flat->for_cells(-std::numbers::sqrt2 * reads, size_, [&](std::int64_t x, std::int64_t y) {
+      const auto texel = static_cast<std::size_t>(y * size_ + x);
+      if (number_[texel] != no_texel) return;
+      const glm::vec2 centre(x, y), at = nearest(p, centre);
+      const glm::vec2 apart = glm::abs(p[0] + at.x * u + at.y * v - centre);
+      if (std::max(apart.x, apart.y) >= reads) return;
+      if (const float distance = glm::dot(apart, apart); distance < beside[texel].distance)
+        beside[texel] = {{triangle, at}, distance};
+    });
   }
 
   Place place(const SurfacePoint& at) const {

@@ -118,9 +118,6 @@ std::vector<Piece> read_pieces(const tinygltf::Model& model, const LoadOptions& 
     const tinygltf::Node& node = model.nodes[static_cast<std::size_t>(placed.node)];
     if (node.mesh == -1 || !placed.visible) continue;
     const std::string name = node_name(model, placed.node);
-    if (node.mesh < 0 || static_cast<std::size_t>(node.mesh) >= model.meshes.size()) {
-      throw SceneError("node \"" + name + "\": there is no mesh " + std::to_string(node.mesh));
-    }
     const auto& mesh = model.meshes[static_cast<std::size_t>(node.mesh)];
     const auto& primitives = mesh.primitives;
     std::size_t parts = primitives.size();

@@ -90,6 +90,18 @@ glm::vec3 weights(const SurfacePoint& point) {
   return {1 - point.barycentric.x - point.barycentric.y, point.barycentric.x, point.barycentric.y};
 }
 
+Facing facing_of(const Scene& scene, std::uint32_t triangle) {
+  const auto corner = [&](std::size_t k) -> const Vertex& {
+    return scene.vertices[scene.indices[std::size_t{3} * triangle + k]];
+  };
+  const Vertex &a = corner(0), &b = corner(1), &c = corner(2);
+  const glm::vec3 cross = glm::cross(b.position - a.position, c.position - a.position);
+  const float length = glm::length(cross);
+  const glm::vec3 face = length > 0 ? cross / length : glm::vec3(0);
+  const bool turned = glm::dot(face, a.normal + b.normal + c.normal) < 0;
+  return {turned ? -face : face, turned};
+}
+
 glm::vec3 albedo_at(const Scene& scene, const Material& material, const SurfacePoint& point) {
   const glm::vec3 w = weights(point);
   glm::vec2 at(0);

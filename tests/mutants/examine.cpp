@@ -160,7 +160,7 @@ class Examination {
     if (care_.shown) require(!light->shown().bytes.empty(), "bake: nothing is shown");
     doing_("finish");
     lightfield::BuriedTexels(scene, size).take_light_of_neighbours(irradiance);
-    commands::fill_gutters(scene, size, irradiance);
+    commands::Gutters(scene, size).fill(irradiance);
     require(std::ranges::all_of(
                 irradiance,
                 [](const glm::vec4& e) {

@@ -37,7 +37,7 @@ class Filter {
            std::vector<AtlasTap>& taps) const {
     const auto size = static_cast<int>(records_.size());
     const glm::vec2 place = at * static_cast<float>(size) - 0.5f, low = glm::floor(place), share = place - low;
-    const glm::vec3 face = face_of(triangle);
+    const glm::vec3 face = scene::facing_of(scene_, triangle).face;
     for (int corner = 0; corner < 4; ++corner) {
       const int right = corner & 1, down = corner >> 1;
       const float weight = (right ? share.x : 1 - share.x) * (down ? share.y : 1 - share.y);
@@ -58,17 +58,6 @@ class Filter {
            glm::distance(record.position, position) <= most_apart * record.side;
   }
 
-  glm::vec3 face_of(std::uint32_t triangle) const {
-    const auto corner = [&](std::size_t k) -> const scene::Vertex& {
-      return scene_.vertices[scene_.indices[std::size_t{3} * triangle + k]];
-    };
-    const scene::Vertex &a = corner(0), &b = corner(1), &c = corner(2);
-    const glm::vec3 cross = glm::cross(b.position - a.position, c.position - a.position);
-    const float length = glm::length(cross);
-    if (length == 0) return a.normal;
-    return glm::dot(cross, a.normal + b.normal + c.normal) < 0 ? -cross / length : cross / length;
-  }
-
   const scene::Scene& scene_;
   const TexelRecords& records_;
   std::vector<std::uint32_t> surfaces_;
@@ -85,7 +74,6 @@ struct Seams::Factored {
   Eigen::SimplicialLDLT<Eigen::SparseMatrix<float>> matrix;
 };
 
-Seams::Seams(Seams&&) noexcept = default;
 Seams::~Seams() = default;
 
 Seams::Seams(const scene::Scene& scene, const TexelRecords& records) {

@@ -16,7 +16,6 @@ namespace lichtveld::lightfield {
 class Seams {
  public:
   Seams(const scene::Scene& scene, const TexelRecords& records);
-  Seams(Seams&&) noexcept;
   ~Seams();
 
   // Those by a seam, of the atlas, gutters too.

@@ -9,4 +9,10 @@ std::vector<glm::vec4> TexelView::on_host() const {
   return {host_.begin(), host_.end()};
 }
 
+std::span<const glm::vec4> TexelView::on_host(std::vector<glm::vec4>& room) const {
+  if (image_ == nullptr) return host_;
+  room = on_host();
+  return room;
+}
+
 }  // namespace lichtveld::lightfield

@@ -15,8 +15,8 @@ void Over::put(const TexelView& irradiance, std::span<const Instead> instead) {
   if (!seams_) times.time("find_seams", [&] { find(instead); });
   if (seams_->texels().empty() && instead.empty()) return;
   times.time("seams", [&] {
-    std::vector<glm::vec4> values;
-    for (const auto& offset : seams_->offsets(irradiance.on_host())) values.emplace_back(offset, 0);
+    std::vector<glm::vec4> values, room;
+    for (const auto& offset : seams_->offsets(irradiance.on_host(room))) values.emplace_back(offset, 0);
     for (const auto& [texel, radiance] : instead) values.emplace_back(radiance, 1);
     gpu::put<glm::vec4>(device_, values_, values);
   });

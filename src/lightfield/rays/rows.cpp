@@ -69,17 +69,14 @@ Rows::Rows(const scene::Scene& scene, const TexelRecords& records, std::uint32_t
     };
     const scene::Vertex &a = corner(0), &b = corner(1), &c = corner(2);
     const auto size = static_cast<float>(size_);
-    const glm::vec3 cross = glm::cross(b.position - a.position, c.position - a.position);
-    const float length = glm::length(cross);
-    const glm::vec3 face = length > 0 ? cross / length : glm::vec3(0);
-    const bool turned = glm::dot(face, a.normal + b.normal + c.normal) < 0;
+    const auto [face, turned] = scene::facing_of(scene, triangle);
     triangles_[triangle] = {.origin = size * a.atlas,
                             .u = size * (b.atlas - a.atlas),
                             .v = size * (c.atlas - a.atlas),
-                            .face = turned ? -face : face,
+                            .face = face,
                             .turned = turned,
                             .surface = surfaces[triangle],
-                            .face_key = face_key(surfaces[triangle], turned ? -face : face),
+                            .face_key = face_key(surfaces[triangle], face),
                             .fallback = no_row};
   }
   const float shift = inset * scene::bounding_sphere(scene).radius;

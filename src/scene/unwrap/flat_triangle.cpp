@@ -31,14 +31,17 @@ std::optional<FlatTriangle> FlatTriangle::of(const std::array<glm::dvec2, 3>& co
   return result;
 }
 
-FlatTriangle::Range FlatTriangle::rows(std::int64_t least, std::int64_t end) const {
-  return {std::max(whole(std::floor(min_.y - 0.5)), least), std::min(whole(std::ceil(max_.y - 0.5)) + 1, end)};
+FlatTriangle::Range FlatTriangle::rows(double margin, std::int64_t least, std::int64_t end) const {
+  const double outside = std::max(-margin, 0.0);
+  return {std::max(whole(std::floor(min_.y - outside - 0.5)), least),
+          std::min(whole(std::ceil(max_.y + outside - 0.5)) + 1, end)};
 }
 
 FlatTriangle::Range FlatTriangle::columns(std::int64_t row, double margin, std::int64_t least,
                                           std::int64_t end) const {
   const double y = static_cast<double>(row) + 0.5;
-  double left = min_.x, right = max_.x;
+  const double outside = std::max(-margin, 0.0);
+  double left = min_.x - outside, right = max_.x + outside;
   for (const glm::dvec3& edge : edges_) {
     const double rest = edge.y * y + edge.z - margin;  // edge.x * x + rest >= 0
     if (edge.x > 0) left = std::max(left, -rest / edge.x);

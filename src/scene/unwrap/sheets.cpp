@@ -116,8 +116,7 @@ Meshes used_meshes(const tinygltf::Model& model) {
   SkinReader skins(model, nodes, remarks);
   for (const PlacedNode& placed : nodes) {
     const auto& node = model.nodes[static_cast<std::size_t>(placed.node)];
-    if (!placed.visible || node.mesh < 0 || static_cast<std::size_t>(node.mesh) >= model.meshes.size())
-      continue;
+    if (node.mesh == -1 || !placed.visible) continue;
     const std::string name = node_name(model, placed.node);
     const auto& weights =
         node.weights.empty() ? model.meshes[static_cast<std::size_t>(node.mesh)].weights : node.weights;

@@ -22,6 +22,8 @@ class TexelView {
   std::uint32_t width() const { return width_; }
 
   std::vector<glm::vec4> on_host() const;
+  // The same without a copy of what is there already; what is not is read back into `room`.
+  std::span<const glm::vec4> on_host(std::vector<glm::vec4>& room) const;
 
  private:
   std::span<const glm::vec4> host_ = {};
