@@ -5,7 +5,6 @@
 #include <bit>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 #include "core/parallel.hpp"
 #include "lichtveld/progress/progress.hpp"
@@ -22,10 +21,6 @@ using Samples = std::array<float, samples_of_lamp>;
 constexpr std::uint64_t eighth = 0x0101010101010101;
 // Fewer rays than this do not tell that all others of a block are the same.
 constexpr int rays_that_decide = 64;
-// Receivers of one block are in one square of so many texels a side of the atlas, and at most so far from its
-// first [its sides].
-constexpr std::uint32_t block_side = 4;
-constexpr float block_reach = 8;
 // Lamps of more than a few patches are points in their middles from so far away [their boxes' diagonals]; where
 // all lamps together have more than that many patches, from everywhere: in closed form it would take too long.
 constexpr std::size_t few_patches = 16, most_patches = 4096;
@@ -94,11 +89,10 @@ LampLight::LampLight(const scene::RayIndex& index, const scene::Scene& scene,
       scene_(scene),
       receivers_(receivers),
       sets_(sets),
+      blocks_(receivers, static_cast<std::uint32_t>(scene.bodies.size()), size),
       covered_(receivers.size(), 0),
       irradiance_(receivers.size(), glm::vec3(0)),
       soft_(receivers.size(), glm::vec3(0)) {
-  find_blocks(size);
-  find_neighbours(size);
   auto shapes = find_area_lamps(scene, most_lamps, sets.count);
   std::size_t patches = 0;
   for (const auto& shape : shapes) patches += shape.patches.size();
@@ -115,66 +109,6 @@ LampLight::LampLight(const scene::RayIndex& index, const scene::Scene& scene,
     lamp.seen = lamp.own;
     lamp.rough.assign(scene.bodies.size(), 0);
     lamp.hidden.assign(scene.bodies.size(), std::vector<std::vector<Hidden>>(scene.bodies.size()));
-  }
-}
-
-void LampLight::find_blocks(std::uint32_t size) {
-  const auto square = [&](std::uint32_t receiver) {
-    const auto& record = receivers_[receiver];
-    return std::array{record.body, record.atlas / size / block_side, record.atlas % size / block_side};
-  };
-  order_.resize(receivers_.size());
-  std::iota(order_.begin(), order_.end(), 0u);
-  std::ranges::stable_sort(order_, {}, square);
-  blocks_of_body_.assign(scene_.bodies.size(), {});
-  for (std::uint32_t i = 0; i < order_.size(); ++i) {
-    const auto& record = receivers_[order_[i]];
-    const auto belongs_to = [&](const Block& block) {
-      const std::uint32_t first = order_[block.first];
-      return block.size() < most_receivers && square(first) == square(order_[i]) &&
-             glm::distance(receivers_[first].position, record.position) <= block_reach * record.side;
-    };
-    if (blocks_.empty() || !belongs_to(blocks_.back())) {
-      Range& of_body = blocks_of_body_[record.body];
-      if (of_body.size() == 0) of_body.first = static_cast<std::uint32_t>(blocks_.size());
-      blocks_.push_back({{i, i}, {record.position, record.position}});
-      of_body.end = static_cast<std::uint32_t>(blocks_.size());
-    }
-    Block& block = blocks_.back();
-    block.end = i + 1;
-    block.box = {glm::min(block.box.min, record.position), glm::max(block.box.max, record.position)};
-  }
-}
-
-void LampLight::find_neighbours(std::uint32_t size) {
-  const auto first = [&](std::uint32_t block) -> const TexelRecord& {
-    return receivers_[order_[blocks_[block].first]];
-  };
-  const std::uint32_t squares = (size + block_side - 1) / block_side;
-  std::vector<std::vector<std::uint32_t>> in_square(std::size_t{squares} * squares);
-  const auto square = [&](std::uint32_t block) {
-    const std::uint32_t atlas = first(block).atlas;
-    return std::pair{static_cast<int>(atlas % size / block_side), static_cast<int>(atlas / size / block_side)};
-  };
-  const auto at = [&](int x, int y) -> std::vector<std::uint32_t>* {
-    const auto side = static_cast<int>(squares);
-    if (x < 0 || y < 0 || x >= side || y >= side) return nullptr;
-    return &in_square[static_cast<std::size_t>(y * side + x)];
-  };
-  const auto count = static_cast<std::uint32_t>(blocks_.size());
-  beside_.resize(count);
-  for (std::uint32_t block = 0; block < count; ++block)
-    if (first(block).atlas != no_atlas_texel) at(square(block).first, square(block).second)->push_back(block);
-  for (std::uint32_t block = 0; block < count; ++block) {
-    if (first(block).atlas == no_atlas_texel) continue;
-    const auto [x, y] = square(block);
-    for (int dy = -1; dy <= 1; ++dy)
-      for (int dx = -1; dx <= 1; ++dx)
-        if (const auto* there = at(x + dx, y + dy))
-          for (const auto other : *there)
-            if (other != block && first(other).body == first(block).body &&
-                glm::distance(first(other).position, first(block).position) <= block_reach * first(block).side)
-              beside_[block].push_back(other);
   }
 }
 
@@ -228,10 +162,9 @@ std::vector<char> LampLight::light(Lamp& lamp, const Moves& moves, Care care) {
   for (std::uint32_t body = 0; body < bodies; ++body) {
     if (!moved(body)) continue;
     find_own(lamp, body, look);
-    const auto& blocks = blocks_of_body_[body];
+    const auto& blocks = blocks_.of_body(body);
     if (blocks.size() == 0) continue;
-    for (auto at = blocks_[blocks.first].first; at < blocks_[blocks.end - 1].end; ++at)
-      touched[order_[at]] = reset;
+    for (const auto receiver : blocks_.receivers(blocks)) touched[receiver] = reset;
   }
   for (std::uint32_t of = 0; of < bodies; ++of)
     for (std::uint32_t body = 1; body < bodies; ++body) {
@@ -261,10 +194,9 @@ std::vector<char> LampLight::light(Lamp& lamp, const Moves& moves, Care care) {
 
 // Of the receivers of a body.
 void LampLight::find_covered(std::uint32_t body) {
-  const auto& blocks = blocks_of_body_[body];
+  const auto& blocks = blocks_.of_body(body);
   for_each_index(blocks.first, blocks.end, blocks_of_a_task, [&](std::uint32_t i) {
-    for (auto at = blocks_[i].first; at < blocks_[i].end; ++at) {
-      const std::uint32_t receiver = order_[at];
+    for (const auto receiver : blocks_.receivers({i, i + 1})) {
       const auto& record = receivers_[receiver];
       const bool meets = body != 0 && index_.may_meet_own_body(record.triangle, record.face);
       covered_[receiver] = contact(receiver, 0) || (meets && contact(receiver, body));
@@ -350,7 +282,7 @@ void LampLight::weigh(const Lamp& lamp, std::uint32_t receiver, Samples& weights
 // Blocks that see the lamp otherwise than those around them look at all samples: the rim of a small part that
 // is seen, or hidden, may lie between those that they have looked at.
 void LampLight::find_own(Lamp& lamp, std::uint32_t body, Look look) const {
-  const auto& blocks = blocks_of_body_[body];
+  const auto& blocks = blocks_.of_body(body);
   std::vector<Sight> sights(blocks.size());
   for_each_index(blocks.first, blocks.end, blocks_of_a_task,
                  [&](std::uint32_t i) { sights[i - blocks.first] = find_own(lamp, body, blocks_[i], look); });
@@ -358,7 +290,7 @@ void LampLight::find_own(Lamp& lamp, std::uint32_t body, Look look) const {
   const auto differs = [&](std::uint32_t block) {
     const Sight own = sights[block - blocks.first];
     return (own == Sight::dark || own == Sight::lit) &&
-           std::ranges::any_of(beside_[block], [&](std::uint32_t other) {
+           std::ranges::any_of(blocks_.beside(block), [&](std::uint32_t other) {
              const Sight sight = sights[other - blocks.first];
              return sight != Sight::none && sight != own;
            });
@@ -372,7 +304,7 @@ LampLight::Sight LampLight::find_own(Lamp& lamp, std::uint32_t body, const Block
   BlockBits looked_at{};
   bool meets_body = false;
   for (std::uint32_t i = 0; i < block.size(); ++i) {
-    const std::uint32_t receiver = order_[block.first + i];
+    const std::uint32_t receiver = blocks_.receiver(block, i);
     const auto& record = receivers_[receiver];
     const glm::vec3 unshadowed = lamp.unshadowed[receiver] = this->unshadowed(lamp, receiver);
     const bool meets = body != 0 && index_.may_meet_own_body(record.triangle, record.face);
@@ -388,7 +320,7 @@ LampLight::Sight LampLight::find_own(Lamp& lamp, std::uint32_t body, const Block
   leave_out_hidden(0);
   if (meets_body) leave_out_hidden(body);
   for (std::uint32_t i = 0; i < block.size(); ++i) {
-    const std::uint32_t receiver = order_[block.first + i];
+    const std::uint32_t receiver = blocks_.receiver(block, i);
     // Whether a sample that brings no light is seen does not matter.
     lamp.own[receiver] = lamp.seen[receiver] = looked_at[i] == 0 ? 0 : left[i] | ~looked_at[i];
   }
@@ -418,7 +350,7 @@ LampLight::BlockBits LampLight::hidden(const Lamp& lamp, std::uint32_t body, con
   };
   const auto look_at = [&](std::uint32_t i, Bits some) {
     if (some == 0) return;
-    const std::uint32_t receiver = order_[block.first + i];
+    const std::uint32_t receiver = blocks_.receiver(block, i);
     const auto& samples = this->samples(lamp, receiver);
     const glm::vec3 place = start(receiver);
     for (; some != 0; some &= some - 1) {
@@ -449,7 +381,7 @@ LampLight::BlockBits LampLight::hidden(const Lamp& lamp, std::uint32_t body, con
 
 std::vector<LampLight::Hidden> LampLight::find_hidden(const Lamp& lamp, std::uint32_t body, std::uint32_t of,
                                                       Look look) const {
-  const auto& blocks = blocks_of_body_[of];
+  const auto& blocks = blocks_.of_body(of);
   std::vector<std::vector<Hidden>> of_task((blocks.size() + blocks_of_a_task - 1) / blocks_of_a_task);
   for_each_index(0, static_cast<std::uint32_t>(of_task.size()), 1, [&](std::uint32_t task) {
     const auto first = blocks.first + task * blocks_of_a_task;
@@ -470,7 +402,7 @@ void LampLight::find_hidden(const Lamp& lamp, std::uint32_t body, std::uint32_t 
   if (!may_hide(box, shifted(block.box, offsets_[of], skin), lamp_box)) return;
   BlockBits looked_at{}, may_be{};
   for (std::uint32_t i = 0; i < block.size(); ++i) {
-    const std::uint32_t receiver = order_[block.first + i];
+    const std::uint32_t receiver = blocks_.receiver(block, i);
     if (lamp.own[receiver] == 0) continue;
     const glm::vec3 place = start(receiver);
     if (!may_hide(box, {place, place}, lamp_box)) continue;
@@ -498,7 +430,7 @@ void LampLight::find_hidden(const Lamp& lamp, std::uint32_t body, std::uint32_t 
   }
   const auto bits = hidden(lamp, body, block, looked_at, may_be, look);
   for (std::uint32_t i = 0; i < block.size(); ++i)
-    if (bits[i] != 0) found.push_back({order_[block.first + i], bits[i]});
+    if (bits[i] != 0) found.push_back({blocks_.receiver(block, i), bits[i]});
 }
 
 glm::vec3 LampLight::arriving(const Lamp& lamp, std::uint32_t receiver) const {

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "core/area_lamps.hpp"
+#include "core/receiver_blocks.hpp"
 #include "core/texel_records.hpp"
 #include "lichtveld/lightfield/directions.hpp"
 #include "lichtveld/lightfield/light_field.hpp"
@@ -77,19 +78,13 @@ class LampLight {
     std::vector<std::vector<std::vector<Hidden>>> hidden;  // by body, then by the receivers' body
   };
 
-  // Receivers that follow each other in order_.
-  struct Block : Range {
-    scene::Box box = {};  // around their places, bodies at rest [m]
-  };
-  static constexpr std::uint32_t most_receivers = 16;  // of a block
-  using BlockBits = std::array<Bits, most_receivers>;  // of each of its receivers
+  using Block = ReceiverBlocks::Block;
+  using BlockBits = std::array<Bits, ReceiverBlocks::most_receivers>;  // of each of its receivers
 
   // How a block's receivers see a lamp, by the samples that they have looked at.
   enum class Sight : char { none, dark, lit, mixed };  // none: nothing would arrive anyhow
 
   void find_covered(std::uint32_t body);
-  void find_blocks(std::uint32_t size);
-  void find_neighbours(std::uint32_t size);
   // True for each receiver to which another light may arrive now.
   std::vector<char> light(Lamp& lamp, const Moves& moves, Care care);
   // Which samples a block's receivers look at: an eighth each; all where these disagree; all.
@@ -120,10 +115,7 @@ class LampLight {
   const scene::Scene& scene_;
   std::span<const TexelRecord> receivers_;
   const SampleSets sets_;
-  std::vector<std::uint32_t> order_;  // of receivers: body by body
-  std::vector<Block> blocks_;
-  std::vector<Range> blocks_of_body_;
-  std::vector<std::vector<std::uint32_t>> beside_;  // of each block those around it
+  const ReceiverBlocks blocks_;
   scene::Offsets offsets_;
   scene::Scales scales_;
   std::vector<Lamp> lamps_;
